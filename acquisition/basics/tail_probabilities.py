@@ -41,6 +41,27 @@ def f_above(value: float, dof: float, dof_below: float) -> float:
     return float(scipy.special.fdtrc(dof, dof_below, value))
 
 
+def f_limit(chance: float, dof: float, dof_below: float) -> float:
+    """Return the F ratio that is exceeded with a given probability [-].
+
+    Args:
+        chance: the probability [-].
+        dof: degrees of freedom of the numerator.
+        dof_below: degrees of freedom of the denominator.
+    """
+    return float(scipy.special.fdtri(dof, dof_below, 1.0 - chance))
+
+
+def gamma_above(value: float, shape: float) -> float:
+    """Return the probability that a gamma variable of scale 1 exceeds a value [-].
+
+    Args:
+        value: also below 0, where the probability is 1.
+        shape: of the distribution [-], its mean.
+    """
+    return float(scipy.special.gammaincc(shape, max(value, 0.0)))
+
+
 def t_quantile(share: float, dof: float) -> float:
     """Return a quantile of Student's t distribution [-].
 

@@ -2,6 +2,7 @@
 """Groups of an open HDF5 file, and the axes of its datasets."""
 
 import h5py
+from h5py import h5ds, h5i
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.netcdf_write import NO_VARIABLE
@@ -21,13 +22,29 @@ def find_group(parent: h5py.Group, name: str) -> h5py.Group | None:
 
 def dimension_names(dataset: h5py.Dataset) -> tuple[str, ...]:
     """Return the name of each axis, empty where it has none."""
-    names = []
-    for axis in dataset.dims:
-        scale = axis[0] if len(axis) else None
-        names.append("" if scale is None else str(scale.name).rsplit("/", 1)[-1])
-    if dataset.is_scale and names == [""]:
-        return (str(dataset.name).rsplit("/", 1)[-1],)
+    names = [_first_scale(dataset.id, axis) for axis in range(dataset.id.rank)]
+    if names == [""] and h5ds.is_scale(dataset.id):
+        return (_last_part(dataset.id),)
     return tuple(names)
+
+
+def _first_scale(dataset: h5py.h5d.DatasetID, axis: int) -> str:
+    """Return the name of the first scale of an axis, empty without one.
+
+    Without the objects that `Dataset.dims` makes for each axis and scale: a result has
+    hundreds of axes, and all are named when its digest is computed.
+    """
+    if h5ds.get_num_scales(dataset, axis) < 1:
+        return ""
+    return _last_part(h5ds.iterate(dataset, axis, lambda scale: scale))
+
+
+def _last_part(place: h5py.h5d.DatasetID) -> str:
+    """Return the last part of the path of a dataset; "None" if it has none."""
+    path = h5i.get_name(place)
+    if path is None:
+        return "None"
+    return str(path.decode("utf-8", "surrogateescape")).rsplit("/", 1)[-1]
 
 
 def is_dimension_only(dataset: h5py.Dataset) -> bool:

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Fit the confidence of a name to forced answers, or judge it on others.
 
-Usage: python benchmarks/gap/calibrate.py fit RUNS.jsonl
-       python benchmarks/gap/calibrate.py judge RUNS.jsonl
+Usage: python benchmarks/gap/calibrate.py fit RUNS.jsonl [--half even]
+       python benchmarks/gap/calibrate.py judge RUNS.jsonl [--half odd]
 
 RUNS.jsonl is made by forced_answers.py. A logistic model of the evidence (`confidence`)
 is fitted with a weak prior on its slopes, whose signs are fixed: more evidence never
 lowers a confidence. `fit` prints the numbers of `model/confidence_settings.py`; `judge`
 prints ranking (area under the curve), log score, and the confidence stated in each
-third, for the settings in force. The seeds of the two must differ.
+third, for the settings in force. The seeds of the two must differ: --half keeps every
+second block of six seeds, each with all kinds of campaigns.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from forced_answers import KINDS
 from scipy.optimize import minimize
 from scipy.stats import rankdata
 
@@ -30,14 +32,18 @@ from jointbench.analysis.gap.model.confidence import (
 
 SIGNS = (1.0, -1.0, -1.0, -1.0, -1.0, -1.0, 1.0, -1.0)
 """Of the slopes: margin, excess, probe, left, scatter, deviation, amplitude, second."""
+HALVES = ("even", "odd")
 PRIOR_SLOPE = 0.3
 PRIOR_SD = 0.3
 
 
-def answers(path: Path) -> list[dict[str, Any]]:
-    """Return the campaigns with a forced answer."""
+def answers(path: Path, half: str | None) -> list[dict[str, Any]]:
+    """Return the campaigns with a forced answer, of all seeds or half of them."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    return [r for r in map(json.loads, lines) if r["evidence"] is not None]
+    found = [r for r in map(json.loads, lines) if r["evidence"] is not None]
+    if half is None:
+        return found
+    return [r for r in found if HALVES[r["seed"] // len(KINDS) % 2] == half]
 
 
 def fit(runs: list[dict[str, Any]]) -> None:
@@ -97,8 +103,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("action", choices=("fit", "judge"))
     parser.add_argument("runs", type=Path)
+    parser.add_argument("--half", choices=HALVES)
     arguments = parser.parse_args()
-    runs = answers(arguments.runs)
+    runs = answers(arguments.runs, arguments.half)
     fit(runs) if arguments.action == "fit" else judge(runs)
 
 

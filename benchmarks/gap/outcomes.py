@@ -50,7 +50,7 @@ def wilson(hits: int, count: int) -> tuple[float, float]:
     centre = share + Z95**2 / (2 * count)
     half = Z95 * sqrt(share * (1 - share) / count + Z95**2 / (4 * count**2))
     scale = 100 / (1 + Z95**2 / count)
-    return scale * (centre - half), scale * (centre + half)
+    return max(scale * (centre - half), 0.0), scale * (centre + half)
 
 
 def share_text(hits: int, count: int) -> str:

@@ -29,7 +29,7 @@ from outcomes import Run, word_of
 
 from jointbench.analysis.gap.catalogue.catalogue_settings import CATALOGUE_SETTINGS
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.intake.intake_settings import INTAKE
+from jointbench.analysis.gap.intake.intake_settings import HITS, INTAKE
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
@@ -45,6 +45,7 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.second_method.second_method_settings import (
     SECOND_METHOD,
 )
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 from jointbench.simulators.campaigns.campaign_records import make_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 
@@ -70,10 +71,12 @@ PARTS: Mapping[str, Any] = {
     "second method": SECOND_METHOD,
     "model error": MODEL_ERROR_SETTINGS,
     "modes and ports": MODAL,
+    "bolted bodies": STRUCTURE,
+    "raw hits": HITS,
 }
 """The numerical settings by part of the engine."""
-UNDER_MODEL_ERROR = ("mostly_", "open_")
-"""Decision settings that no campaign of the sweep reaches: see model_error.py."""
+UNDER_MODEL_ERROR = ("mostly_", "open_", "floor_")
+"""Decision settings that no campaign of the sweep reaches: model error, structures."""
 AS_IT_IS = "none"
 """Name of the run with the standard policy."""
 

@@ -180,7 +180,7 @@ def make_two_joints(seed: int) -> TwoJoints:
     """Draw a campaign: two laws, each well above the noise beside the other."""
     rng = np.random.default_rng([seed, 17])
     noise = float(np.exp(rng.uniform(*np.log(NOISE))))
-    design = draw_design(seed, grid="middle", noise=noise)
+    design = draw_design(seed, grid="small", noise=noise)
     names = rng.choice(LAWS, size=2)
     scales = scales_of(design)
     for draw in range(_DRAWS):

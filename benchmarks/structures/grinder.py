@@ -61,6 +61,12 @@ PRINTED = {
 }
 """Stiffness [N/m] of normal and tangents that the paper prints for two joints."""
 
+PRINTED_DAMPERS = {
+    "bed": (6.873e5, 6.000e5, 2.957e5),
+    "guide": (5.753e5, 2.861e5, 2.719e5),
+}
+"""Damping [N s/m] that the paper prints for these."""
+
 
 def printed_values() -> np.ndarray:
     """Return the printed bed values at all joints but the guide."""

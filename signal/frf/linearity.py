@@ -21,10 +21,10 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.basics.tail_probabilities import f_above
 from jointbench.signal.frf.excited_band import excited_band
+from jointbench.signal.frf.pair_sums import PairSums
 from jointbench.signal.frf.spectral_sums import (
     HitAdder,
     LevelLines,
-    PairSums,
     SpectralSums,
 )
 from jointbench.signal.hits.hit_pairs import pair_up

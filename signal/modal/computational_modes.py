@@ -16,11 +16,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, IntArray
 from jointbench.signal.modal.frf_lines import FrfLines, gaps_of
-from jointbench.signal.modal.refined_pole_covariance import (
-    RefinedPoles,
-    refine_poles,
-    unresolved,
-)
+from jointbench.signal.modal.pole_limits import unresolved
+from jointbench.signal.modal.refined_pole_covariance import RefinedPoles, refine_poles
 from jointbench.signal.modal.residual_search.local_fit import (
     Group,
     WholeFit,

@@ -65,45 +65,6 @@ class LinearFit:
         return np.asarray((modal[:, ::2] + 1j * modal[:, 1::2]).T)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ResidualTerms:
-    """Residual terms of the modes below and above the band.
-
-    Attributes:
-        lower: of the receptance, lower / s^2 [1/kg]: one over the mass of the modes
-            below the band, or of a free body; shape (n_frf,).
-        upper: of the receptance [m/N]: the compliance of the modes above, shape
-            (n_frf,).
-    """
-
-    lower: FloatArray
-    upper: FloatArray
-
-
-def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
-    """Return the lower and upper residual of every FRF.
-
-    Args:
-        lines: lines of the fit.
-        fit: of `fit_residues`.
-
-    Returns:
-        The two classical terms, without the further powers of s of the fit.
-    """
-    n_modal = 2 * fit.significance.size
-    s = lines.laplace
-    used = _residual_terms(lines)
-    parts = fit.coefficients[:, n_modal:] @ used.T
-    scale = np.abs(s[s.size // 2])
-    powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
-    # The fit uses orthonormal combinations of these columns: undone here.
-    columns = stacked(powers * (s**lines.derivatives)[:, None])
-    size = np.linalg.norm(columns, axis=0)
-    terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
-    lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
-    return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
-
-
 def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     """Return the model's columns: two for each pole, then the residual terms.
 

@@ -28,11 +28,8 @@ from jointbench.signal.modal.line_noise import (
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.lsfd import LinearFit
 from jointbench.signal.modal.mode_significance import needed, significance
-from jointbench.signal.modal.refined_pole_covariance import (
-    RefinedPoles,
-    refine_poles,
-    unresolved,
-)
+from jointbench.signal.modal.pole_limits import unresolved
+from jointbench.signal.modal.refined_pole_covariance import RefinedPoles, refine_poles
 from jointbench.signal.modal.residual_search.doubtful_neighbours import (
     DoubtfulNeighbours,
     doubtful_neighbours,

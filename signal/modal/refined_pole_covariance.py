@@ -18,7 +18,7 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     squared_size,
 )
-from jointbench.signal.modal.frf_lines import FrfLines, gaps_of, measured_width
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import residual_around
 from jointbench.signal.modal.lsfd import (
     LinearFit,
@@ -32,6 +32,7 @@ from jointbench.signal.modal.normal_equations import (
     gram_matrices,
     inverses,
 )
+from jointbench.signal.modal.pole_limits import PolePrior, kept_beyond, lost_poles
 
 # Stop when no pole moves by more than this share of its own half-power width.
 _SMALL_STEP = 1e-4
@@ -39,14 +40,6 @@ _SMALL_STEP = 1e-4
 _SMALL_GAIN = 0.05
 # Where others still move, a pole that moved less than this has converged.
 _SETTLED = 1e-2
-# A pole that leaves its start by this many half-power half-widths has diverged.
-_LEASH = 1.0
-_LEASH_DAMPING = 10.0
-# A band that begins below this share of its end begins at zero.
-_NEXT_TO_ZERO = 0.1
-# Poles beyond the band: shares of the band for their decay rates, and of its first line
-# for their frequencies.
-_LEAST_DECAY, _MOST_DECAY, _LEAST_PLACE = 5e-4, 0.3, 0.2
 # Damping of the step above which the pole is dropped instead.
 _PATIENCE = 1.0
 # Damping up to which a step is that of Gauss and Newton, chi-squared of a value up to
@@ -119,26 +112,6 @@ class _Point:
     slope: FloatArray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Prior:
-    """Prior of the poles: their LSCF values, with weights.
-
-    Closely overlapping modes can exchange damping for residue without a larger
-    residual; only the start then distinguishes them. Its sd is taken as a half-power
-    half-width, beyond which a pole counts as another one. Where the lines resolve a
-    pole, this prior is negligible. The first `n_modes` are modes, the others
-    computational poles beyond the band.
-    """
-
-    start: ComplexArray
-    weight: FloatArray
-    n_modes: int
-
-    def cost(self, pole: ComplexArray) -> float:
-        """Return the weighted squared distance from the start."""
-        return float(self.weight @ np.abs(pole - self.start) ** 2)
-
-
 def refine_poles(
     lines: FrfLines,
     start: ComplexArray,
@@ -170,11 +143,7 @@ def refine_poles(
     """
     n_modes = start.size
     extra = np.empty(0, complex) if beyond is None else beyond
-    reach = _LEASH * measured_width(lines, start)
-    reach = np.append(reach, np.full(extra.size, np.ptp(lines.laplace.imag)))
-    weight = (1.0 / reach) ** 2
-    weight[:n_modes] *= 1.0 if doubt is None else doubt
-    prior = _Prior(np.append(start, extra), weight, n_modes)
+    prior = PolePrior.around(lines, start, extra, 1.0 if doubt is None else doubt)
     pole = np.append(start if begin is None else begin, extra)
     pole, here, converged = _search(lines, prior, pole, variance, steps)
     joint = _joint_covariance(here, prior)
@@ -197,7 +166,7 @@ def refine_poles(
 
 def _search(
     lines: FrfLines,
-    prior: _Prior,
+    prior: PolePrior,
     pole: ComplexArray,
     variance: FloatArray,
     steps: int,
@@ -208,8 +177,8 @@ def _search(
     moved = np.full(pole.size, np.inf)
     for _ in range(steps):
         trial, gain = _stepped(here, prior, pole, free, damping)
-        trial[prior.n_modes :] = _kept_beyond(lines, prior, pole, trial)
-        lost = _lost(lines, trial, prior)
+        trial[prior.n_modes :] = kept_beyond(lines, prior, pole, trial)
+        lost = lost_poles(lines, trial, prior)
         if damping <= _NEWTON and not lost.any():
             moved = np.abs(trial - pole) / measured_width(lines, pole)
             if _is_last(moved, gain, here):
@@ -233,7 +202,7 @@ def _search(
     return pole, here, free & (settled | (moved < _SETTLED))
 
 
-def _is_small(moved: FloatArray, gain: float, here: _Point, prior: _Prior) -> bool:
+def _is_small(moved: FloatArray, gain: float, here: _Point, prior: PolePrior) -> bool:
     """Return whether a step changes nothing that the noise would not.
 
     Args:
@@ -343,7 +312,7 @@ def slope_turns(residue: FloatArray) -> FloatArray:
 
 
 def _stepped(
-    here: _Point, prior: _Prior, pole: ComplexArray, free: BoolArray, damping: float
+    here: _Point, prior: PolePrior, pole: ComplexArray, free: BoolArray, damping: float
 ) -> tuple[ComplexArray, float]:
     """Return the poles after a Levenberg-Marquardt step, and its gain to first order.
 
@@ -359,75 +328,7 @@ def _stepped(
     return pole + change.view(np.complex128), float(force @ change)
 
 
-def _kept_beyond(
-    lines: FrfLines, prior: _Prior, pole: ComplexArray, trial: ComplexArray
-) -> ComplexArray:
-    """Return trial poles beyond the band, kept there and damped.
-
-    Only a flank of them is seen: a step from a poor start often leaves the stable
-    half-plane, or enters the band. One in a gap of the lines is kept in it.
-    """
-    n = prior.n_modes
-    low, high = lines.laplace.imag[[0, -1]]
-    start, span = prior.start[n:].imag, high - low
-    above = start > 0.5 * (low + high)
-    least = np.where(above, np.minimum(start, high), _LEAST_PLACE * low)
-    most = np.where(above, high + span, np.maximum(start, low))
-    width = np.full(start.size, span)
-    for begin, end in gaps_of(lines):
-        within = (start > begin) & (start < end)
-        least, most = np.where(within, begin, least), np.where(within, end, most)
-        width = np.where(within, end - begin, width)
-    decay = np.maximum(-trial[n:].real, -pole[n:].real / 3.0)
-    decay = np.clip(decay, _LEAST_DECAY * width, _MOST_DECAY * width)
-    return np.asarray(1j * np.clip(trial[n:].imag, least, most) - decay)
-
-
-def _lost(lines: FrfLines, pole: ComplexArray, prior: _Prior) -> BoolArray:
-    """Return which poles are no longer damped, or have diverged from their start.
-
-    A computational pole is lost if it has moved into the band.
-    """
-    start = prior.start
-    ratio = pole.real / start.real
-    before, now = measured_width(lines, start), measured_width(lines, pole)
-    diverged: BoolArray = np.abs((pole - start).imag) > _LEASH * np.maximum(before, now)
-    diverged |= (ratio < 1.0 / _LEASH_DAMPING) | (ratio > _LEASH_DAMPING)
-    inside = ~unresolved(lines, pole) | (pole.real >= 0.0) | (pole.imag <= 0.0)
-    return np.asarray(np.where(np.arange(pole.size) < prior.n_modes, diverged, inside))
-
-
-def unresolved(lines: FrfLines, pole: ComplexArray) -> BoolArray:
-    """Return which poles do not have their peak within the band.
-
-    These are poles beyond it, or less than a half-power half-width from its edge: with
-    only one flank measured they cannot be distinguished from modes outside. So are
-    those between lines that were left out of the band, a half-width from either side.
-
-    Args:
-        lines: lines of the fit.
-        pole: [rad/s], shape (n,).
-
-    Returns:
-        Shape (n,).
-    """
-    low, high = lines.laplace.imag[[0, -1]]
-    width = measured_width(lines, pole)
-    # There are no modes below a band that begins next to zero.
-    floor = low + width if low > _NEXT_TO_ZERO * high else 0.0 * width
-    outside = (pole.imag < floor) | (pole.imag > high - width)
-    return np.asarray(outside | _between(lines, pole, width))
-
-
-def _between(lines: FrfLines, pole: ComplexArray, width: FloatArray) -> BoolArray:
-    """Return which poles are in a gap of the lines, a half-width from either end."""
-    low, high = gaps_of(lines).T
-    place = pole.imag[:, None]
-    away = np.minimum(place - low, high - place)
-    return np.asarray(np.any(away > width[:, None], axis=1))
-
-
-def _joint_covariance(here: _Point, prior: _Prior) -> FloatArray:
+def _joint_covariance(here: _Point, prior: PolePrior) -> FloatArray:
     """Return the covariance of all (Re p, Im p), with the prior of the start."""
     inverse = inverses(here.gram + np.diag(np.repeat(prior.weight, 2)))
     # Rounding can leave a variance of exact data below zero.

@@ -34,7 +34,7 @@ MARGIN_RANGE = (1.0, 1e4)
 _CLOSE = 0.15  # relative tolerance of the size of an effect
 _MOST_SIZES = 6
 _FAR = 3.0  # ratio of margins at which refitted rivals require another size
-_MORE_SIZES = 2
+_MORE_SIZES = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -206,22 +206,38 @@ def _sized(
     if not FAMILIES[largest.name].resizable:
         return largest, None
     share = _first_share(scale, largest, wanted)
-    last: tuple[float, float] | None = None
+    tried: list[tuple[float, float]] = []
+    best: tuple[float, HiddenEffect, Margin] | None = None
     for _ in range(_MORE_SIZES):
         sized = resize_effect(largest, share)
         known = expected_margin(scale, sized)
-        margin = max(known.margin, 1e-12)
-        missing = float(np.log(wanted / margin))
-        if abs(missing) < np.log(_FAR) or (share == 1.0 and missing > 0):
-            return sized, known
-        # Between first-order and second-order growth.
-        power = 3.0
-        if last is not None and last[0] != share:
-            slope = np.log(margin / last[1]) / np.log(share / last[0])
-            power = float(np.clip(slope, 1.0, 5.0))
-        last = share, margin
-        share = min(1.0, share * float(np.exp(np.clip(missing / power, -3.0, 3.0))))
-    return resize_effect(largest, share), None
+        missing = float(np.log(wanted / max(known.margin, 1e-12)))
+        if best is None or abs(missing) < best[0]:
+            best = abs(missing), sized, known
+        if best[0] < np.log(_FAR) or (share == 1.0 and missing > 0):
+            break
+        tried.append((float(np.log(share)), missing))
+        share = min(1.0, float(np.exp(_next_size(tried))))
+    return (largest, None) if best is None else best[1:]
+
+
+def _next_size(tried: Sequence[tuple[float, float]]) -> float:
+    """Return the log of the next share to try, from logs of shares and of what misses.
+
+    Between two sizes, one too small and one too large, by interpolation; a rival may
+    begin to follow an effect at some size, so that the margin leaps.
+    """
+    small = max((t for t in tried if t[1] > 0), default=None)
+    large = min((t for t in tried if t[1] < 0), default=None)
+    if small is not None and large is not None and small[0] < large[0]:
+        part = small[1] / (small[1] - large[1])
+        return small[0] + part * (large[0] - small[0])
+    # Between first-order and second-order growth.
+    (share, missing), power = tried[-1], 3.0
+    if len(tried) > 1 and tried[-2][0] != share:
+        slope = (tried[-2][1] - missing) / (share - tried[-2][0])
+        power = float(np.clip(slope, 1.0, 5.0))
+    return share + float(np.clip(missing / power, -3.0, 3.0))
 
 
 def _first_share(scale: MarginScale, largest: HiddenEffect, wanted: float) -> float:

@@ -32,7 +32,8 @@ from jointbench.simulators.hidden.sample_weights import (
 )
 
 _BASE = len(BASE_NAMES)
-_LOG_STEP = 1e-4  # of the base parameters
+_LOG_STEP = 1e-7  # of the base parameters: at 1e-4 a record's end misses its slope
+_CURVE_STEP = 1e-4  # of the joint's stiffness, differenced to both sides
 _RIVAL_STEP = 1e-3  # of the rival's, whose change is smaller
 _MOST_STEPS = 6
 _LONGEST_STEP = 0.4  # of a logarithm of the base
@@ -88,13 +89,18 @@ class BaseFit:
         return float(self.left @ self.left)
 
 
-def base_view(design: CampaignDesign) -> BaseView:
-    """Weigh the base responses of a design and differentiate them."""
+def base_view(design: CampaignDesign, *, samples: int | None = None) -> BaseView:
+    """Weigh the base responses of a design and differentiate them.
+
+    Args:
+        design: the campaign without effects.
+        samples: of a record that count, from its start; None for all.
+    """
     responses = sketch_responses(design)
     stiff, soft = _stiffer_and_softer(design)
-    slope = (stiff - soft) / (2 * _LOG_STEP)
-    curve = (stiff - 2 * responses + soft) / _LOG_STEP**2
-    weights = sample_weights(design, responses, slope, curve)
+    slope = (stiff - soft) / (2 * _CURVE_STEP)
+    curve = (stiff - 2 * responses + soft) / _CURVE_STEP**2
+    weights = sample_weights(design, responses, slope, curve, samples=samples)
     nothing = np.zeros((0, _BASE))
     bare = BaseView(design, responses, weights, nothing, nothing)
     return _with_slopes(bare)
@@ -103,12 +109,12 @@ def base_view(design: CampaignDesign) -> BaseView:
 def stiffness_slope(design: CampaignDesign) -> FloatArray:
     """Return the derivative of the responses to ln kj [m/s^2], (n_records, 2, n)."""
     stiff, soft = _stiffer_and_softer(design)
-    return np.asarray((stiff - soft) / (2 * _LOG_STEP))
+    return np.asarray((stiff - soft) / (2 * _CURVE_STEP))
 
 
 def _stiffer_and_softer(design: CampaignDesign) -> list[FloatArray]:
     """Return the responses of a joint a little stiffer, and a little softer."""
-    step = np.where(np.array(BASE_NAMES) == "kj", _LOG_STEP, 0.0)
+    step = np.where(np.array(BASE_NAMES) == "kj", _CURVE_STEP, 0.0)
     return [
         sketch_responses(design, physical=_values(design.physical, sign * step))
         for sign in (1, -1)

@@ -83,16 +83,17 @@ class MarginScale:
     rivals: Mapping[str, Rival] = field(repr=False)
 
 
-def margin_scale(design: CampaignDesign) -> MarginScale:
+def margin_scale(design: CampaignDesign, *, samples: int | None = None) -> MarginScale:
     """Prepare a design for `expected_margin`.
 
     Args:
         design: the campaign without effects.
+        samples: of a record that count, from its start; None for all.
 
     Returns:
         Base responses, weights, slopes and rivals.
     """
-    view, scales = base_view(design), specimen_scales(design)
+    view, scales = base_view(design, samples=samples), specimen_scales(design)
     families: dict[str, list[HiddenEffect]] = {}
     for rival in rival_effects(scales):
         families.setdefault(_site(rival), []).append(rival)

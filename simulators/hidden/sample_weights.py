@@ -2,16 +2,20 @@
 """Weights of the samples of a campaign: noise, force noise, scatter of hits.
 
 The scatter is no noise of samples: each hit has one factor on its force and one on the
-    stiffness of its joint, so it blurs only a few known directions of each record.
+stiffness of its joint, so it blurs only a few known directions of each record. Neither
+is the noise of the force: what it adds rings on like the response to the hit, in the
+few modes of the specimen, and hides there far more than its power suggests.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.simulators.hidden.campaign_design import CampaignDesign
+from jointbench.simulators.hidden.campaign_response import sketch_responses
 from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE, SAMPLE_RATE
+from jointbench.simulators.measuring.hammer import Pulse
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,8 +24,8 @@ class SampleWeights:
 
     Attributes:
         inverse: 1/sigma of every sample, shape (n_records, 2, n).
-        blurred: orthonormal directions of each record, weighted, that the scatter
-            blurs, shape (n_records, 2 n, n_directions).
+        blurred: orthonormal directions of each record, weighted, that scatter and
+            force noise blur, shape (n_records, 2 n, n_directions).
         kept: remaining share of a change in each [-], (n_records, n_directions).
     """
 
@@ -39,6 +43,8 @@ def sample_weights(
     responses: FloatArray,
     joint_slope: FloatArray,
     joint_curve: FloatArray,
+    *,
+    samples: int | None = None,
 ) -> SampleWeights:
     """Weigh the samples of a design.
 
@@ -47,9 +53,10 @@ def sample_weights(
         responses: of the base [m/s^2], shape (n_records, 2, n).
         joint_slope: their derivative to the logarithm of kj, same shape.
         joint_curve: their second derivative to it, same shape.
+        samples: of a record that count, from its start; None for all.
 
     Returns:
-        Weights; without scatter no direction is blurred.
+        Weights; without scatter only the force noise blurs directions.
 
     Source:
         The covariance of a record in units of its noise is I + B B^T, B the blurred
@@ -57,14 +64,17 @@ def sample_weights(
         along each left singular vector of B (singular value s). To second order in
         a Gaussian x, x^2/2 scatters by 1/sqrt(2), uncorrelated with x.
     """
-    gain = FORCE_NOISE**2 * _force_gain(design, responses)
-    inverse = 1 / (design.noise * np.sqrt(1 + gain))
+    inverse = np.full_like(responses, 1 / design.noise)
+    if samples is not None:
+        inverse[..., samples:] = 0.0
     count = len(design.conditions)
-    directions = np.zeros((count, responses[0].size, 0))
+    forced = FORCE_NOISE * design.noise * _impulses(design)
+    directions = (inverse[..., None] * forced).reshape(count, responses[0].size, -1)
     if design.hit_scatter > 0:
         bend = design.hit_scatter / np.sqrt(2) * joint_curve
         blur = design.hit_scatter * np.stack((responses, joint_slope, bend), axis=-1)
-        directions = (inverse[..., None] * blur).reshape(count, -1, 3)
+        settled = (inverse[..., None] * blur).reshape(count, -1, 3)
+        directions = np.concatenate([directions, settled], axis=-1)
     further = _further(design, responses)
     if further.shape[-1]:
         more = (inverse[..., None] * further).reshape(count, responses[0].size, -1)
@@ -113,16 +123,36 @@ def windowed(weights: SampleWeights, window: FloatArray) -> SampleWeights:
     )
 
 
-def _force_gain(design: CampaignDesign, base: FloatArray) -> FloatArray:
-    """Return the summed squares of the responses to unit samples of the force.
+def _impulses(design: CampaignDesign) -> FloatArray:
+    """Return the responses to one newton in each sample of the hits.
 
-    Noise counts during the hit; outside the force is zero. A hit is short: its response
-    over the sum of its samples approximates that to one sample.
+    Shape (n_records, 2, n, n_samples). The force counts during the hit: outside it is
+    known to be zero. Both the impulse and the sample are short against every period.
     """
-    gain = np.empty_like(base)
-    for i, condition in enumerate(design.conditions):
-        pulse = condition.pulse
-        samples = SAMPLE_RATE * pulse.width
-        # The mean of a half sine raised to 1.6 is 0.55 of its peak.
-        gain[i] = samples * (base[i] / (0.55 * samples * pulse.peak)) ** 2
-    return gain
+    step = 1.0 / SAMPLE_RATE
+    samples = int(np.ceil(max(c.pulse.width for c in design.conditions) / step))
+    found: dict[int, FloatArray] = {}
+    for condition in design.conditions:
+        if condition.hit_dof not in found:
+            start = np.floor(condition.pulse.start / step) * step
+            # The area of a half sine is 2 / pi of its peak times its width.
+            short = Pulse(start, step, peak=np.pi / 2, exponent=1.0)
+            plain = replace(
+                condition,
+                pulse=short,
+                force_factor=1.0,
+                joint_factor=1.0,
+                channel_gain=(1.0, 1.0),
+                force_delay=0.0,
+            )
+            (one,) = sketch_responses(replace(design, conditions=(plain,)))
+            found[condition.hit_dof] = _delayed(one, samples)
+    return np.stack([found[c.hit_dof] for c in design.conditions])
+
+
+def _delayed(response: FloatArray, count: int) -> FloatArray:
+    """Return a response delayed by 0 to count - 1 samples, along a last axis."""
+    late = np.zeros((*response.shape, count))
+    for k in range(count):
+        late[:, k:, k] = response[:, : response.shape[1] - k]
+    return late

@@ -56,7 +56,9 @@ def record_command(
     source: Annotated[
         str,
         typer.Argument(
-            metavar="URL", help="Bench: 'sim:two-body-campaign' with parameters."
+            metavar="URL",
+            help="Bench: 'sim:two-body-campaign', 'sim:bolted-plates', 'sim:lap-beam' "
+            "or 'sim:column-on-bed', with parameters.",
         ),
     ],
     out: SessionOut,
@@ -66,11 +68,20 @@ def record_command(
 ) -> int:
     """Record a whole campaign on a bench into a session file.
 
-    All hits are judged after the recording.
+    All hits are judged after the recording. A flexible bench (two bodies on bolts)
+    gives a file of raw hits; nominal values and what it hides go beside it as JSON.
 
     Examples:
         jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out session.h5
+        jointbench record 'sim:bolted-plates?seed=3&hide=loose_bolt' --out hits.h5
     """
+    from jointbench.simulators.flexible.flexible_url import is_flexible_url
+
+    if is_flexible_url(source):
+        from jointbench.station.sources.record_flexible import run_record_flexible
+
+        run_record_flexible(source, out, overwrite=force, json_target=json)
+        return 0
     from jointbench.station.commands.record_command import run_record
 
     written = run_record(source, out, overwrite=force, json_target=json)

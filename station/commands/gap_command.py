@@ -65,7 +65,9 @@ def run_gap(
     own = [entry for path in owned for entry in read_effects(path)]
     laws = [one for one in effects if isinstance(one, str)]
     entries = with_real_joints(installed_catalogue(), laws)
-    wanted = replace(wanted, entries=with_own(entries, own), curves=curves)
+    wanted = replace(
+        wanted, entries=with_own(entries, own), curves=curves, extended=bool(effects)
+    )
     packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
     with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:

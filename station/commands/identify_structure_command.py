@@ -10,11 +10,16 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.lumped.identified import IdentificationVerdict
 from jointbench.analysis.structures.identification.identify_structure import (
+    StructureSearch,
     identify_structure,
 )
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
     structure_json,
+)
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    sensor_masses,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import Prior
 from jointbench.analysis.structures.matrices.structure import Structure
@@ -42,6 +47,7 @@ from jointbench.station.joints.contact_comparison import (
 from jointbench.station.joints.structure_contact import joint_of, theory_surface
 from jointbench.station.joints.structure_model import (
     StructureModel,
+    masses_of,
     sensors_of,
     structure_of,
 )
@@ -96,6 +102,7 @@ def run_identify_structure(
             sought=settings.identify.sought,
             shared=settings.identify.shared,
             priors=_priors(settings.identify),
+            search=StructureSearch(masses=_masses(settings, structure, reduced)),
             structure=structure,
         )
     rows = _theory(settings, surface, preloads, result)
@@ -185,6 +192,16 @@ def _reduced(
         lambda: reduce_structure(structure, modes=modes, box=box, loads=loads),
     )
     return with_moduli(model, list(settings.identify.modulus_sd))
+
+
+def _masses(
+    settings: StructureModel, structure: Structure, reduced: ReducedModel
+) -> SensorMasses | None:
+    """Return the masses of sensors that are unknown."""
+    unknown = settings.identify.mass_sd
+    if not unknown:
+        return None
+    return sensor_masses(structure, reduced, masses_of(settings), unknown)
 
 
 def _known(table: IdentifyTable, names: tuple[str, ...]) -> JointValues | None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench verify`` over many files: sessions, results, tables and ledgers.
+"""``jointbench verify`` over many files: sessions, results, campaigns and more.
 
 A results file is intact if its content matches its digest, corrupted if it does not. A
-file of an early version has no digest. Digests detect accidental changes; a deliberate
-change can replace the digest as well.
+campaign and a file of an early version have no digest. Digests detect accidental
+changes; a deliberate change can replace the digest as well.
 """
 
 from collections import Counter
@@ -17,6 +17,7 @@ from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.quoting import shown, visible
 from jointbench.acquisition.session_file.store import damage_named
+from jointbench.analysis.gap.intake import read_campaign
 from jointbench.station.archive.archive_table import TABLE_SCHEMA
 from jointbench.station.archive.ledger import ledger_seal
 from jointbench.station.archive.session_problems import problems_of
@@ -44,7 +45,7 @@ class Checked:
 
     Attributes:
         path: of the file.
-        kind: session, results, table or ledger.
+        kind: session, results, campaign, table or ledger.
         state: as in JSON, one of `whole`, `unsigned`, `rotten`, `damaged`.
         problems: one line each; empty for a file without fault.
     """
@@ -104,6 +105,7 @@ def check_file(path: Path) -> Checked:
     kind = _kind(path)
     checks: dict[str, Callable[[Path], Checked]] = {
         "results": _results,
+        "campaign": _campaign,
         "table": _table,
         "ledger": _ledger,
     }
@@ -120,6 +122,8 @@ def _kind(path: Path) -> str:
     try:
         if is_results(path):
             return "results"
+        if _has_schema(path, read_campaign.SCHEMA):
+            return "campaign"
     except JointbenchError:
         pass
     if path.suffix == TABLE:
@@ -141,15 +145,22 @@ def _results(path: Path) -> Checked:
     return Checked(path, "results", seal)
 
 
+def _campaign(path: Path) -> Checked:
+    read_campaign.read_campaign(path)
+    return Checked(path, "campaign", Seal.UNSIGNED)
+
+
 def _table(path: Path) -> Checked:
-    with open_guarded(path) as file, damage_named(path):
-        if read_attribute(file, "schema") != TABLE_SCHEMA:
-            raise UsageError(
-                f"{shown(path.name)} is not a table of `jointbench archive`"
-            )
+    if not _has_schema(path, TABLE_SCHEMA):
+        raise UsageError(f"{shown(path.name)} is not a table of `jointbench archive`")
     seal = _seal(path)
     problems = (CORRUPTED.replace("process`, `reprocess` or `modal", "archive"),)
     return Checked(path, "table", seal, problems if seal is Seal.CORRUPTED else ())
+
+
+def _has_schema(path: Path, schema: str) -> bool:
+    with open_guarded(path) as file, damage_named(path):
+        return bool(read_attribute(file, "schema") == schema)
 
 
 def _seal(path: Path) -> Seal:
@@ -183,5 +194,6 @@ def _show(found: Sequence[Checked], json_target: str | None) -> None:
         screen.print(f"and {len(faults) - MOST_SHOWN} more; use --json for all")
     if any(one.state == Seal.UNSIGNED for one in found):
         screen.print(
-            "no digest: the files are of an early version; changes cannot be detected",
+            "no digest: campaigns and files of an early version carry none; changes "
+            "cannot be detected",
         )

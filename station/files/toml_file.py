@@ -64,12 +64,13 @@ def read_toml(path: Path, model: type[Model]) -> Model:
     except OSError as error:
         raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
     except ValidationError as error:
-        raise BadData(f"{shown}: {_first(error, model)}") from error
+        raise BadData(f"{shown}: {first_problem(error, model)}") from error
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
         raise BadData(f"{shown}: not a TOML file ({error})") from error
 
 
-def _first(error: ValidationError, model: type[BaseModel]) -> str:
+def first_problem(error: ValidationError, model: type[BaseModel]) -> str:
+    """Return the first broken rule: key, value, rule, and how many more."""
     problem = error.errors(include_url=False)[0]
     key = ".".join(str(part) for part in problem["loc"]) or "(top level)"
     more = error.error_count() - 1

@@ -24,6 +24,7 @@ from jointbench.analysis.gap.diagnosis.single_record import (
     diagnose_record,
 )
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
+from jointbench.analysis.gap.intake.read_hit_campaign import HIT_SCHEMA
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.signal.hits.find_hits import HitCriteria
@@ -37,6 +38,7 @@ from jointbench.station.gap.measured_curves import (
     curves_of_recordings,
 )
 from jointbench.station.gap.record_campaign import read_record
+from jointbench.station.gap.structure_files import examine_structure
 from jointbench.station.pipeline.chain import hits_stage
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.pipeline.judge_again import StoredHits, with_hits
@@ -63,6 +65,7 @@ class GapRequest:
         preload: on the joint where the session does not say [N], or None.
         entries: the catalogue of this run.
         curves: whether modes over amplitude are compared with the explanations.
+        extended: whether effects beyond the installed catalogue were asked for.
     """
 
     model: Path | None = None
@@ -70,6 +73,7 @@ class GapRequest:
     preload: float | None = None
     entries: tuple[LumpedEffect, ...] = field(default_factory=installed_catalogue)
     curves: bool = False
+    extended: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +125,8 @@ def examine(
             f"'{paths[0]}' is no campaign, session (.h5) or record (.mat); bring hits "
             "in with `jointbench import` first"
         )
+    if _schema(paths[0]) == HIT_SCHEMA:
+        return _examine_hits(paths, wanted, progress)
     if _schema(paths[0]) != SESSION_SCHEMA:
         return _examine_campaign(paths, wanted, progress)
     return _examine_sessions(paths, wanted, progress)
@@ -214,6 +220,26 @@ def _examine_campaign(
         progress=progress,
     )
     return Examined(paths[0].stem, found)
+
+
+def _examine_hits(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine hits on bolted bodies, whose model is nominal parameters."""
+    if len(paths) > 1 or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' brings its own torques and is given alone; leave --preload "
+            "and other files out"
+        )
+    if wanted.curves or wanted.extended:
+        raise UsageError(
+            "--curves, --effects and --with do not apply to bolted bodies; leave them "
+            "out"
+        )
+    found, remarks = examine_structure(
+        paths[0], wanted.model, without=wanted.without, progress=progress
+    )
+    return Examined(paths[0].stem, found, remarks=remarks)
 
 
 def _examine_record(

@@ -4,10 +4,9 @@
 from pathlib import Path
 
 import numpy as np
-import scipy.signal
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.errors import BadData, SamplingError
+from jointbench.acquisition.basics.errors import BadData, SamplingError, UsageError
 from jointbench.acquisition.records.recordings import (
     Quantity,
     Recording,
@@ -25,6 +24,7 @@ from jointbench.analysis.lumped.lumped_model import Output
 from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
+from jointbench.station.gap.line_files import LineRequest, read_lines
 from jointbench.station.schemas.levels_model import LevelsModel, LevelTable
 
 _OUTPUTS = {
@@ -57,8 +57,7 @@ def read_levels(path: Path) -> tuple[RecordSet, BaseRequest]:
     model = read_toml(path, LevelsModel)
     read: list[tuple[LevelTable, Recording]] = []
     for level in model.levels:
-        files = [path.parent / name for name in level.files]
-        recordings = read_recordings(files, columns=model.records.columns, point="")
+        recordings = _recordings(model, level, path.parent)
         read += [(level, _decimated(r, model.records.decimate)) for r in recordings]
     first = read[0][1]
     for _, recording in read[1:]:
@@ -73,8 +72,33 @@ def read_levels(path: Path) -> tuple[RecordSet, BaseRequest]:
         output=_OUTPUTS[common_response(first.channels)],
         repeatability=model.records.repeatability,
     )
+    _require_linear_frf(model, given)
     base = model.base
     return given, BaseRequest(base.band, base.modes, base.beyond)
+
+
+def _recordings(
+    model: LevelsModel, level: LevelTable, folder: Path
+) -> tuple[Recording, ...]:
+    """Return the recordings of a level, one period of each file of complex lines."""
+    files = [folder / name for name in level.files]
+    table = model.records
+    if table.lines is None or table.rate is None:
+        return read_recordings(files, columns=table.columns, point="")
+    request = LineRequest(table.lines, table.rate, level.frf_force)
+    return tuple(read_lines(path, request) for path in files)
+
+
+def _require_linear_frf(model: LevelsModel, given: RecordSet) -> None:
+    """Raise unless an FRF is of the lowest level, whose records count as linear."""
+    lowest = given.lowest[0].level
+    for level in model.levels:
+        if level.frf_force is not None and level.name != lowest:
+            raise UsageError(
+                f"level {level.name!r} is an FRF at {level.frf_force:g} N and "
+                f"{lowest!r} has less force; an FRF stands for the lowest level, as a "
+                "linear one: leave it out or give its samples"
+            )
 
 
 def _inputs(recording: Recording) -> tuple[str, ...]:
@@ -113,9 +137,9 @@ def _decimated(recording: Recording, factor: int) -> Recording:
     """Keep one sample in `factor`, forces and responses through the same filter."""
     if factor == 1:
         return recording
-    samples = scipy.signal.decimate(
-        recording.samples, factor, ftype="fir", axis=1, zero_phase=True
-    )
+    from scipy.signal import decimate  # slow to import
+
+    samples = decimate(recording.samples, factor, ftype="fir", axis=1, zero_phase=True)
     return Recording(
         recording.name,
         np.ascontiguousarray(samples),
@@ -138,6 +162,8 @@ def _record(model: LevelsModel, level: LevelTable, recording: Recording) -> Leve
         held_out=level.held_out,
         excitation=level.excitation or table.excitation,
     )
+    if table.lines is not None:
+        return one_period(record, record.force.shape[1])
     period = level.period or table.period
     if period is None or record.excitation != "multisine":
         return record

@@ -87,12 +87,17 @@ def structure_of(model: StructureModel, folder: Path) -> Structure:
         for name, one in model.joints.items()
     ]
     supports = [Support(s.body, s.face, s.kind, s.stiffness) for s in model.supports]
-    masses = [
-        PointMass(one.body, one.position, one.mass)
-        for one in model.sensors.values()
-        if one.mass > 0
-    ]
+    masses = list(masses_of(model).values())
     return build_structure(bodies, joints, supports=supports, masses=masses)
+
+
+def masses_of(model: StructureModel) -> dict[str, PointMass]:
+    """Return the masses of the sensors that have one, by name."""
+    return {
+        name: PointMass(one.body, one.position, one.mass)
+        for name, one in model.sensors.items()
+        if one.mass > 0
+    }
 
 
 def sensors_of(tables: dict[str, SensorTable]) -> dict[str, MountedSensor]:

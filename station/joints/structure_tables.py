@@ -106,6 +106,7 @@ class IdentifyTable(StrictTable):
     The standard deviations, relative, are those of the model (mesh, material): they
     widen those of measured frequencies and damping ratios. `modulus_sd` makes the
     modulus of a body unknown, with this relative standard deviation around its table;
+    `mass_sd` does the same for the mass of a sensor;
     `priors` hold stiffness and relative standard deviation of a joint's direction;
     `known` holds the stiffness of the directions that are not `sought`.
     """
@@ -122,4 +123,5 @@ class IdentifyTable(StrictTable):
     frequency_sd: _Trust = 0.0
     damping_sd: _Trust = 0.0
     modulus_sd: dict[str, _Share] = Field(default_factory=dict)
+    mass_sd: dict[str, _Share] = Field(default_factory=dict)
     priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)

@@ -61,6 +61,11 @@ from jointbench.station.machine.machine_tables import (
     PointTable,
     TransientTable,
 )
+from jointbench.station.machine.measured_bodies import links_of, measured_parts
+from jointbench.station.machine.measured_tables import (
+    BandedBodyTable,
+    MixedLinkTable,
+)
 
 TOOL = "tool"
 """The point whose receptance is reported."""
@@ -79,6 +84,8 @@ class MachineModel(StrictTable):
     springs: dict[str, SpringTable] = Field(default_factory=dict)
     supports: tuple[SupportTable, ...] = ()
     masses: tuple[MassTable, ...] = ()
+    measured: dict[str, BandedBodyTable] = Field(default_factory=dict)
+    links: dict[str, MixedLinkTable] = Field(default_factory=dict)
     points: dict[str, PointTable] = Field(min_length=1)
     loads: tuple[LoadTable, ...] = ()
     transient: TransientTable | None = None
@@ -104,7 +111,7 @@ class MachineModel(StrictTable):
                 )
         if self.transient is not None and not self.loads:
             raise ValueError("a table [transient] needs [[loads]]")
-        if not self.joints and not self.springs:
+        if not self.joints and not self.springs and not self.links:
             raise ValueError("give [joints.*] or [springs.*] between the bodies")
         return self
 
@@ -135,22 +142,40 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
         structure=structure,
         beams=tuple(_beam(name, one, model) for name, one in model.beams.items()),
         rigid=tuple(
-            RigidPart(name, one.position, one.mass, one.inertia)
+            RigidPart(name, one.position, one.mass, one.inertia, one.axis)
             for name, one in model.rigid.items()
         ),
-        settings={
-            name: JointSetting(
-                one.stiffness, one.damping, one.stiffness_sd, one.damping_sd
-            )
-            for name, one in model.joints.items()
-            if one.stiffness is not None
-        },
-        springs=tuple(_spring(name, one) for name, one in model.springs.items()),
+        settings=settings_of(model),
+        springs=springs_of(model),
         points={
             name: MachinePoint(one.body, one.position)
             for name, one in model.points.items()
         },
+        speeds=speeds_of(model),
+        measured=measured_parts(model.measured, folder),
+        links=links_of(model.links, [*model.bodies, *model.beams, *model.rigid]),
     )
+
+
+def speeds_of(model: MachineModel) -> dict[str, float]:
+    """Return the speeds of the bodies that turn, by name [rad/s]."""
+    speeds = {name: one.speed for name, one in model.beams.items()}
+    speeds |= {name: one.speed for name, one in model.rigid.items()}
+    return {name: 2.0 * np.pi * speed for name, speed in speeds.items() if speed}
+
+
+def settings_of(model: MachineModel) -> dict[str, JointSetting]:
+    """Return the values of the joints over areas, by name."""
+    return {
+        name: JointSetting(one.stiffness, one.damping, one.stiffness_sd, one.damping_sd)
+        for name, one in model.joints.items()
+        if one.stiffness is not None
+    }
+
+
+def springs_of(model: MachineModel) -> tuple[MachineSpring, ...]:
+    """Return the springs between pieces of bodies."""
+    return tuple(_spring(name, one) for name, one in model.springs.items())
 
 
 def loads_of(model: MachineModel, folder: Path) -> tuple[Load, ...]:

@@ -54,6 +54,7 @@ def machine_json(result: MachineResult) -> dict[str, Any]:
         "degrees_of_freedom": result.freedoms,
         "reduced_degrees_of_freedom": result.size[0],
         "largest_frequency_bound": result.bound,
+        "speeds_rad_per_s": dict(result.speeds),
     }
 
 
@@ -84,6 +85,16 @@ def _variant(one: VariantResult) -> dict[str, Any]:
     if tool.interval is not None:
         found["tool"]["size_95_m_per_n"] = {
             axis: tool.interval[:, at].tolist() for at, axis in enumerate(AXES)
+        }
+    if tool.bound is not None:
+        found["tool"] |= {
+            "bound_frequency_hz": tool.bound.frequency.tolist(),
+            "bound_m_per_n": {
+                axis: _finite(tool.bound.error[at]) for at, axis in enumerate(AXES)
+            },
+            "largest_relative_bound": tool.bound.largest
+            if np.isfinite(tool.bound.largest)
+            else None,
         }
     if one.chatter is not None:
         thin = slice(None, None, max(1, one.chatter.speed.size // _MOST_LOBES))
@@ -123,6 +134,11 @@ def _motion(motion: ToolMotion) -> dict[str, Any]:
         "largest_at_s": _by_axis(motion.largest_at),
         "largest_in_last_fifth_m": _by_axis(motion.late),
     }
+
+
+def _finite(values: FloatArray) -> list[float | None]:
+    """Return the values; None for those without a bound."""
+    return [one if np.isfinite(one) else None for one in values.tolist()]
 
 
 def _by_axis(values: FloatArray) -> dict[str, float]:

@@ -19,6 +19,7 @@ _Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
 _Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
 _Turning = Annotated[float, with_unit("rotational_stiffness"), Field(ge=0)]
 _TurnDamping = Annotated[float, with_unit("rotational_damping"), Field(ge=0)]
+_Speed = Annotated[float, with_unit("frequency")]
 _Deviation = Annotated[float, with_unit("ratio"), Field(ge=0, le=3)]
 
 
@@ -86,24 +87,44 @@ class SectionTable(StrictTable):
 
 
 class BeamTable(StrictTable):
-    """A spindle or screw: sections one after the other along an axis."""
+    """A spindle or screw: sections one after the other along an axis.
+
+    With a speed it turns about this axis, and has gyroscopic moments.
+    """
 
     begin: _Point
     direction: _Direction
     material: str
+    speed: _Speed = 0.0
     sections: tuple[SectionTable, ...] = Field(min_length=1)
 
 
 class RigidTable(StrictTable):
-    """A rigid body: mass, and inertia about its centre along x, y, z."""
+    """A rigid body: mass, and inertia about its centre along x, y, z.
+
+    With an axis and a speed it turns about this axis, which is x, y or z, and has
+    gyroscopic moments.
+    """
 
     position: _Point
+    axis: _Direction | None = None
+    speed: _Speed = 0.0
     mass: Annotated[float, with_unit("mass"), Field(gt=0)]
     inertia: tuple[
         Annotated[float, with_unit("inertia"), Field(gt=0)],
         Annotated[float, with_unit("inertia"), Field(gt=0)],
         Annotated[float, with_unit("inertia"), Field(gt=0)],
     ]
+
+    @model_validator(mode="after")
+    def _turns_about_an_axis(self) -> "RigidTable":
+        if self.speed and self.axis is None:
+            raise ValueError(
+                "a speed needs the axis of the turn, e.g. axis = [1, 0, 0]"
+            )
+        if self.axis is not None and sum(map(bool, self.axis)) != 1:
+            raise ValueError("the axis of a rigid body is x, y or z, e.g. [1, 0, 0]")
+        return self
 
 
 class SpringTable(StrictTable):

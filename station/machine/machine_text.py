@@ -15,6 +15,8 @@ from jointbench.analysis.structures.machine.machine_result import (
 
 _NANO, _MICRO = 1e9, 1e6
 _OVERDAMPED = "overdamped"
+# Modes at speed that are named.
+_SPLIT = 6
 # Shapes with a smaller MAC have no partner.
 _SIMILAR = 0.5
 
@@ -203,7 +205,42 @@ def sentences(result: MachineResult) -> list[str]:
         f"{result.freedoms} degrees of freedom, reduced to {result.size[0]}; jointed "
         f"frequencies are at most {result.bound:.1e} (relative) above those of the mesh"
     )
-    return found
+    return found + _bound_sentence(result) + _speed_sentence(result)
+
+
+def _speed_sentence(result: MachineResult) -> list[str]:
+    """Return the lowest modes of a machine whose bodies turn."""
+    if not result.speeds:
+        return []
+    turning = ", ".join(
+        f"{name} at {30.0 * speed / np.pi:.4g} rpm"
+        for name, speed in result.speeds.items()
+    )
+    lowest = ", ".join(
+        f"{one:.4g}" for one in result.jointed.modes.oscillating[0, :_SPLIT]
+    )
+    return [
+        f"Turning: {turning}. Tables of modes are those at rest; receptance, chatter "
+        "and motion include gyroscopic moments. At speed the lowest modes with joints "
+        f"have {lowest} Hz"
+    ]
+
+
+def _bound_sentence(result: MachineResult) -> list[str]:
+    """Return the bound of the error of the receptance at the tool."""
+    bound = result.jointed.tool.bound
+    if bound is None:
+        return []
+    text = "The jointed receptance at the tool is within "
+    if np.isfinite(bound.largest):
+        return [
+            f"{text}{bound.largest:.1e} of that of the mesh, away from antiresonances"
+        ]
+    return [
+        "The error of the receptance at the tool has no bound at "
+        f"{np.isinf(bound.error).any(axis=0).sum()} of {bound.frequency.size} lines: "
+        "choose a wider band"
+    ]
 
 
 def _damping_sentence(modes: VariantModes) -> str:

@@ -15,16 +15,15 @@ from jointbench.analysis.structures.machine.machine_request import (
 from jointbench.analysis.structures.machine.machine_result import AXES, MachineResult
 from jointbench.analysis.structures.machine.reduce_machine import (
     ReducedMachine,
-    reduce_machine,
 )
 from jointbench.station.files.output_paths import check_outputs, write_text
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
+from jointbench.station.machine.machine_cache import reduced_machine_of
 from jointbench.station.machine.machine_file import (
     TOOL,
     MachineModel,
     loads_of,
-    machine_of,
 )
 from jointbench.station.machine.machine_json import machine_json
 from jointbench.station.machine.machine_text import (
@@ -67,8 +66,7 @@ def run_machine(
     if motion is not None and settings.transient is None:
         raise UsageError("--motion needs a table [transient] in the model")
     with working("meshing, reducing bodies"):
-        machine = machine_of(settings, model.parent)
-        reduced = reduce_machine(machine, settings.analysis.band, cache=cache)
+        reduced = reduced_machine_of(settings, model.parent, cache)
     with working("solving glued and jointed"):
         result = analyse_machine(reduced, request_of(settings, model.parent))
     show_machine(result, json_target)
@@ -91,7 +89,8 @@ def run_any_machine(
     """Compute a machine of modelled bodies, or of bodies measured alone.
 
     Args:
-        model: the file; a table [measured] means measured bodies.
+        model: the file; a table [measured] without [bodies] means that all bodies are
+            measured.
         report: HTML report to write.
         motion: table of the transient to write.
         json_target: JSON to write.
@@ -113,10 +112,12 @@ def run_any_machine(
 
 
 def _describes_measured(path: Path) -> bool:
+    """Return whether all bodies of a file are measured."""
     try:
-        return "measured" in load_toml(path)
+        found = load_toml(path)
     except (OSError, ValueError):
-        return False  # the reader of the model names what is wrong
+        return False  # the reader of the model refuses it
+    return "measured" in found and "bodies" not in found
 
 
 def request_of(settings: MachineModel, folder: Path) -> MachineRequest:

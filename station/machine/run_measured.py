@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.structures.measured.coupled_measurements import (
     CoupledModes,
@@ -21,12 +20,11 @@ from jointbench.analysis.structures.measured.frf_coupling import (
     couple_frfs,
 )
 from jointbench.signal.frf.frf import Frf
-from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.machine.measured_bodies import read_body
 from jointbench.station.machine.measured_tables import (
     GROUND,
-    MeasuredBodyTable,
     MeasuredMachine,
 )
 from jointbench.station.screen.figures import axis, figure
@@ -61,7 +59,7 @@ def run_measured(
     check_outputs([model, *files], [json_target, report])
     with working("reading and fitting FRFs, coupling bodies"):
         found = [
-            frf_block(name, _read(name, one, model.parent))
+            frf_block(name, read_body(name, one, model.parent))
             for name, one in settings.measured.items()
         ]
         blocks = [block for block, _ in found]
@@ -74,14 +72,6 @@ def run_measured(
     if report is not None:
         _write_report(report, model.name, modes, frf, settings.points)
     return modes
-
-
-def _read(name: str, one: MeasuredBodyTable, folder: Path) -> Frf:
-    options = FrfOptions(columns=one.columns, averages=one.averages)
-    found = read_frf([folder / file for file in one.frfs], options)
-    if found is None:
-        raise BadData(f"the files of body {name!r} hold no FRFs; give FRFs of it alone")
-    return found
 
 
 def _links(settings: MeasuredMachine, labels: _Labels) -> list[FrfLink]:

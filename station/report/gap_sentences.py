@@ -7,7 +7,12 @@ from jointbench.station.report.gap_numbers import percent, sure
 _PREPOSITIONS = {"link": "in", "body": "on body", "channel": "on channel"}
 _ALL = "channel:all"
 _MAINLY = 0.6
-_SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
+_SEEN = {
+    "level": "at",
+    "hit point": "from hits on",
+    "preload": "at preload",
+    "torque": "at",
+}
 SMALL_GAP = 0.3
 """Gap below which the records are nearly met: priors or a directed test decide."""
 PRIORS = "priors"
@@ -19,10 +24,18 @@ def place(site: str) -> str:
 
     >>> place("link:joint"), place("body:m2"), place("channel:all")
     ('in the joint', 'on body m2', 'on all channels')
+    >>> place("bolt:2"), place("bolts:all"), place("point:P1")
+    ('at bolt 2', 'at all bolts', 'at P1')
     """
     if site == _ALL:
         return "on all channels"
     kind, _, name = site.partition(":")
+    if site == "bolts:all":
+        return "at all bolts"
+    if kind == "joint":
+        return f"in the joint, {name}"
+    if kind == "point":
+        return f"at {name}"
     if kind == "link":
         return "in the joint" if name == "joint" else f"in link {name}"
     return f"{_PREPOSITIONS.get(kind, 'at ' + kind)} {name}"
@@ -159,7 +172,8 @@ def why_lost(one: Ranked, found: Diagnosis) -> str:
         return "not distinguishable from the best"
     if set(best.effects) < set(one.effects):
         return "the best with one effect more, which explains nothing further"
-    return "fits, but less well"
+    # Without the limits of the campaign it is not known whether it fits at all.
+    return "fits, but less well" if found.evidence is not None else "fits less well"
 
 
 def _not_distinguished(one: Ranked, found: Diagnosis) -> str:

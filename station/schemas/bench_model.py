@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from jointbench.analysis.gap.model.stated_scatter import LONGEST_DELAY
 from jointbench.analysis.lumped.lumped_model import (
     GROUND,
     Body,
@@ -19,6 +20,7 @@ from jointbench.analysis.lumped.lumped_model import (
     ResponseChannel,
 )
 from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.schemas.positive_quantities import Force, Mass, Pressure, Share
 from jointbench.station.schemas.record_model import RecordTable, with_mechanical_units
 
 _OUTPUTS = {
@@ -27,12 +29,9 @@ _OUTPUTS = {
     "acceleration": Output.ACCELERATION,
 }
 
-_Mass = Annotated[float, with_unit("mass"), Field(gt=0)]
 _Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
 _Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
-Force = Annotated[float, with_unit("force"), Field(gt=0)]
-Pressure = Annotated[float, with_unit("pressure"), Field(gt=0)]
-_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
+_Delay = Annotated[float, with_unit("time"), Field(gt=0, lt=LONGEST_DELAY)]
 
 
 class BodyTable(StrictTable):
@@ -42,8 +41,8 @@ class BodyTable(StrictTable):
     the point at which its channel sits, or the name of the body.
     """
 
-    mass: _Mass
-    mass_sd: _Mass | None = None
+    mass: Mass
+    mass_sd: Mass | None = None
     channel: str | None = None
     points: tuple[str, ...] = ()
 
@@ -74,18 +73,42 @@ class ContactTable(StrictTable):
     model: str = "ke_3d_modified"
 
 
+class ScatterTable(StrictTable):
+    """Expected sd from hit to hit, by direction: gains and stiffness [-], delays [s].
+
+    A key left out states nothing: the size is then estimated from the hits alone.
+    """
+
+    force_gain: Share | None = None
+    joint_stiffness: Share | None = None
+    channel_gain: Share | None = None
+    force_delay: _Delay | None = None
+    channel_delay: _Delay | None = None
+
+
 class GapTable(StrictTable):
     """What `gap` needs beside bodies and links.
 
     What all channels measure; the preload [N] that the nominal values belong to; the
-    scatter from hit to hit relative to the peak response [-], without repeats;
+    scatter from hit to hit relative to the peak response [-], without repeats; or the
+    scatter to expect, by direction;
     the sessions to examine, beside this file, where it is given in their place.
     """
 
     output: Literal["displacement", "velocity", "acceleration"] = "acceleration"
     preload_reference: Force | None = None
-    repeatability: _Share | None = None
+    repeatability: Share | None = None
+    scatter: ScatterTable = ScatterTable()
     sessions: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _one_statement(self) -> "GapTable":
+        if self.repeatability is not None and self.scatter != ScatterTable():
+            raise ValueError(
+                f"repeatability = {self.repeatability:g} replaces all estimates of "
+                "scatter; state it, or the table gap.scatter, not both"
+            )
+        return self
 
 
 class BenchModel(StrictTable):

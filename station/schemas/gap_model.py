@@ -3,6 +3,7 @@
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.model.nominal import NominalParameters
+from jointbench.analysis.gap.model.stated_scatter import StatedScatter
 from jointbench.station.schemas.bench_model import BenchModel, lumped_model
 
 
@@ -39,6 +40,7 @@ def nominal_parameters(bench: BenchModel) -> NominalParameters:
         points,
         bench.gap.preload_reference,
         bench.gap.repeatability,
+        StatedScatter(**bench.gap.scatter.model_dump()),
     )
 
 

@@ -27,17 +27,16 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.schemas.positive_quantities import Force, Frequency, Share
 
-_Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
-_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
 Excitation = Literal["random", "multisine", "sweep"]
 
 
 class BaseTable(StrictTable):
     """The base: band and number of modes, and whether a mode beyond it is allowed."""
 
-    band: tuple[_Frequency, _Frequency]
+    band: tuple[Frequency, Frequency]
     modes: Annotated[int, Field(ge=1, le=20)] | None = None
     beyond: bool = True
 
@@ -57,16 +56,33 @@ class RecordsTable(StrictTable):
     `period` is that of a multisine in samples: its periods after the lead are averaged,
     and their scatter is the noise. `lead` counts the first samples that are simulated
     and not scored; 0 for a record that begins at rest. `decimate` keeps one sample in
-    so many, after a filter.
+    so many, after a filter. With `lines` in place of `columns` every file holds complex
+    lines of a periodic record, which are sampled at `rate`.
     """
 
     columns: str | None = None
+    lines: str | None = None
+    rate: Frequency | None = None
     excitation: Excitation = "random"
     period: Annotated[int, Field(ge=16)] | None = None
     lead: Annotated[int, Field(ge=0)] = 0
     decimate: Annotated[int, Field(ge=1, le=100)] = 1
-    repeatability: _Share | None = None
+    repeatability: Share | None = None
     remove_mean: bool = False
+
+    @model_validator(mode="after")
+    def _lines_stated(self) -> "RecordsTable":
+        if self.lines is None:
+            return self
+        if self.columns is not None:
+            raise ValueError("columns and lines are both given; keep the one that fits")
+        if self.rate is None or self.repeatability is None:
+            raise ValueError(
+                "complex lines need a rate and a repeatability: they state neither "
+                'their samples nor their noise; for example rate = "1 kHz" and '
+                'repeatability = "0.3 %"'
+            )
+        return self
 
 
 class PortTable(StrictTable):
@@ -76,7 +92,10 @@ class PortTable(StrictTable):
 
 
 class LevelTable(StrictTable):
-    """Files of one level; what differs from [records] may be given here."""
+    """Files of one level; what differs from [records] may be given here.
+
+    `frf_force` says that the files hold an FRF, measured at that rms force.
+    """
 
     name: str = Field(min_length=1)
     files: tuple[str, ...] = Field(min_length=1)
@@ -84,6 +103,7 @@ class LevelTable(StrictTable):
     excitation: Excitation | None = None
     period: Annotated[int, Field(ge=16)] | None = None
     lead: Annotated[int, Field(ge=0)] | None = None
+    frf_force: Force | None = None
 
 
 class LevelsModel(StrictTable):
@@ -101,5 +121,18 @@ class LevelsModel(StrictTable):
             raise ValueError(
                 f"{len(kept)} level is left for the fits; give two or more that are "
                 "not held out: the base comes from the lowest one"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _one_frf(self) -> "LevelsModel":
+        frfs = {level.name for level in self.levels if level.frf_force is not None}
+        if frfs and self.records.lines is None:
+            raise ValueError("frf_force is for complex lines; give lines = ... as well")
+        if len(frfs) > 1:
+            raise ValueError(
+                f"{len(frfs)} levels are FRFs ({', '.join(sorted(frfs))}); an FRF "
+                "stands for the lowest level, as a linear one: give periodic lines or "
+                "samples of the others"
             )
         return self

@@ -32,16 +32,16 @@ from jointbench.acquisition.basics.units import parse_sensitivity, parse_value
 from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.records.recordings import Quantity
 from jointbench.acquisition.serial_lines.instruments import torque_tester
-from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.schemas.positive_quantities import (
+    Force,
+    Frequency,
+    Length,
+    Time,
+    Torque,
+)
 
 _SECONDS_IN_A_MINUTE = 60.0
-
-
-_Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
-_Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
-_Newtons = Annotated[float, with_unit("force"), Field(gt=0)]
-_Torque = Annotated[float, with_unit("torque"), Field(gt=0)]
-_Metres = Annotated[float, with_unit("length"), Field(gt=0)]
 
 
 class AxisTable(StrictTable):
@@ -127,10 +127,10 @@ def _amperes(text: str) -> float:
 class AcquisitionTable(StrictTable):
     """How to stream: rate, length of a block, what the driver keeps unread, trigger."""
 
-    sample_rate: _Hertz = 25_600.0
-    block: _Seconds = 0.05
-    buffer: _Seconds = 20.0
-    patience: _Seconds = 120.0
+    sample_rate: Frequency = 25_600.0
+    block: Time = 0.05
+    buffer: Time = 20.0
+    patience: Time = 120.0
     trigger: Literal["software", "hardware"] = "software"
 
 
@@ -138,17 +138,17 @@ class HitsTable(StrictTable):
     """What to hit, how often, and when a hit is good; None is left to trial hits."""
 
     points: tuple[str, ...] = Field(min_length=1, max_length=200)
-    levels: tuple[_Newtons, ...] = Field(default=(), max_length=20)
-    torques: tuple[_Torque, ...] = Field(default=(), max_length=20)
+    levels: tuple[Force, ...] = Field(default=(), max_length=20)
+    torques: tuple[Torque, ...] = Field(default=(), max_length=20)
     repeats: int = Field(default=3, ge=1, le=1000)
     most_repeats: int | None = Field(default=None, ge=1, le=2000)
     most_rejected: int = Field(default=20, ge=1, le=1000)
     coherence: float = Field(default=0.9, gt=0, lt=1)
     trial_hits: int = Field(default=2, ge=0, le=20)
-    trigger: _Newtons | None = None
-    length: _Seconds | None = None
-    pretrigger: _Seconds = 0.01
-    wait: _Seconds = 10 * _SECONDS_IN_A_MINUTE
+    trigger: Force | None = None
+    length: Time | None = None
+    pretrigger: Time = 0.01
+    wait: Time = 10 * _SECONDS_IN_A_MINUTE
 
     @model_validator(mode="after")
     def _unique(self) -> "HitsTable":
@@ -165,7 +165,7 @@ class PlanJointTable(StrictTable):
     """What a torque makes of the preload: P = n T / (K d)."""
 
     bolts: int = Field(ge=1, le=1000)
-    diameter: _Metres
+    diameter: Length
     nut_factor: float = Field(default=0.2, gt=0, lt=1)
 
     def preload(self, torque: float) -> float:
@@ -198,7 +198,7 @@ class TorqueTable(StrictTable):
     baud: int | None = Field(default=None, ge=300, le=4_000_000)
     tolerance: float = Field(default=0.1, gt=0, lt=1)
     tries: int = Field(default=3, ge=1, le=100)
-    poll: _Seconds = 0.02
+    poll: Time = 0.02
 
 
 class MeasureTable(StrictTable):

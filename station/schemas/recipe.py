@@ -32,7 +32,8 @@ from jointbench.station.files.toml_file import (
     StrictTable,
     read_toml,
 )
-from jointbench.station.schemas.bench_model import BenchModel, Force, Pressure
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.positive_quantities import Force, Pressure
 from jointbench.station.schemas.recipe_modal_parts import (
     FrfPart,
     HitsPart,

@@ -14,10 +14,8 @@ from jointbench.station.files.toml_file import (
     StrictTable,
     with_unit,
 )
-from jointbench.station.schemas.bench_model import Force
+from jointbench.station.schemas.positive_quantities import Force, Frequency, Time
 
-_Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
-_Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
 _Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
 _NotNegative = Annotated[float, Field(ge=0)]
 # The limit is one of the number alone: asked of "auto" it ends in an internal error.
@@ -29,12 +27,12 @@ class HitsPart(StrictTable):
     """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
 
     trigger_level: Force | None = None
-    pretrigger: _Seconds | None = None
-    dead_time: _Seconds | None = None
+    pretrigger: Time | None = None
+    dead_time: Time | None = None
     rearm_fraction: _Share | None = None
     noise_factor: Annotated[float, Field(gt=0)] | None = None
     peak_fraction: _Share | None = None
-    minimum_length: _Seconds | None = None
+    minimum_length: Time | None = None
     overload_fraction: _Share | None = None
     flat_samples: Annotated[int, Field(ge=2)] | None = None
     double_ratio: _Share | None = None
@@ -63,9 +61,9 @@ class KalmanPart(StrictTable):
 
     use: bool = True
     model: Literal["level_slope", "oscillator"] = "level_slope"
-    cutoff: _Hertz | None = None
+    cutoff: Frequency | None = None
     smooth: bool = True
-    frequency: _Hertz | None = None
+    frequency: Frequency | None = None
     damping_ratio: _Share | None = None
 
     @model_validator(mode="after")
@@ -78,11 +76,11 @@ class KalmanPart(StrictTable):
 class ModesPart(StrictTable):
     """Band, order and choices by hand; see `ModalSettings`."""
 
-    band: tuple[_Hertz, _Hertz] | None = None
+    band: tuple[Frequency, Frequency] | None = None
     highest_order: Annotated[int, Field(ge=2, le=200)] | None = None
     refine: bool = True
-    keep: tuple[_Hertz, ...] = ()
-    drop: tuple[_Hertz, ...] = ()
+    keep: tuple[Frequency, ...] = ()
+    drop: tuple[Frequency, ...] = ()
 
     @model_validator(mode="after")
     def _band_ascends(self) -> "ModesPart":

@@ -118,7 +118,8 @@ BANNED = (
         "sheet (of a model)",
         r"\bsheets?\b",
         "nominal parameters with priors",
-        fine=r"data ?sheets?|sheet metal|formula sheets?|style ?sheets?",
+        fine=r"sheet\\?\.json|bench-sheet|"  # names of files that others write
+        r"data ?sheets?|sheet metal|formula sheets?|style ?sheets?",
     ),
     Banned(
         "pull (of a parameter)",

@@ -42,7 +42,7 @@ from jointbench.analysis.gap.model.effect_parameter import Reported
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import (
     Bench,
-    MeasuredBench,
+    NoisyBench,
     values_of,
 )
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
@@ -224,7 +224,7 @@ def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
     )
 
 
-def evidence_of(outcome: SearchOutcome, bench: MeasuredBench, fit: Fit) -> Evidence:
+def evidence_of(outcome: SearchOutcome, bench: NoisyBench, fit: Fit) -> Evidence:
     """Return the quantities from which the confidence of a fit is computed."""
     own = {c.label for c in fit.candidates}
     others = [
@@ -261,7 +261,7 @@ def _limits(
     return effect_limits(bench, outcome.base_screening)
 
 
-def closest_of(outcome: SearchOutcome, bench: LumpedBench) -> Closest | None:
+def closest_of(outcome: SearchOutcome, bench: NoisyBench) -> Closest | None:
     """Return the best explanation before the acceptance criteria, if there is one."""
     fit = outcome.ranked[0] if outcome.ranked else outcome.best
     if not fit.candidates or not np.isfinite(fit.cost):
@@ -271,7 +271,7 @@ def closest_of(outcome: SearchOutcome, bench: LumpedBench) -> Closest | None:
 
 
 def effects_of(
-    outcome: SearchOutcome, bench: MeasuredBench, fits: Sequence[Fit]
+    outcome: SearchOutcome, bench: NoisyBench, fits: Sequence[Fit]
 ) -> tuple[NamedEffect, ...]:
     """Return the effects of explanations, each as in the first that contains it.
 

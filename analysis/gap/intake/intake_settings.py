@@ -116,3 +116,75 @@ class IntakeSettings:
 
 
 INTAKE = IntakeSettings()
+
+
+@dataclass(frozen=True, slots=True)
+class HitSettings:
+    """Numbers of the intake of raw hits; unit, purpose and basis are with each."""
+
+    mains_band: tuple[float, float] = numerical(
+        (45.0, 65.0), "Hz", "frequencies at which mains hum is sought"
+    )
+    mains_step: float = numerical(
+        0.1,
+        "Hz",
+        "step of the search for the mains frequency",
+        "over a quiet start of 20 ms it turns the phase by 0.7 degrees",
+    )
+    contact_noise_sd: float = numerical(
+        5.0, "sd", "force above which a sample belongs to a contact"
+    )
+    contact_share: float = numerical(
+        0.003, "of the peak", "force above which a sample belongs to a contact"
+    )
+    contact_padding: int = numerical(
+        4, "samples", "samples kept on both sides of a contact"
+    )
+    full_share: float = numerical(
+        0.985, "of full scale", "voltage that counts as full scale"
+    )
+    full_samples: int = numerical(
+        2,
+        "samples",
+        "samples of a channel at full scale from which a hit is overloaded",
+        "one sample may be a peak just inside",
+    )
+    second_share: float = numerical(
+        0.03, "of the peak", "second peak of the force from which a hit is double"
+    )
+    glancing_share: float = numerical(
+        0.3, "of the aimed peak", "peak below which a hit is glancing"
+    )
+    peak_noise_sd: float = numerical(
+        50.0, "sd", "peak over the noise of the force below which a hit is glancing"
+    )
+    band_share: float = numerical(
+        0.03,
+        "of the spectrum at 0 Hz",
+        "spectrum of the force at which the band of the hits ends",
+        "30 dB: beyond it a response of equal receptance is below the noise",
+    )
+    rate_over_band: float = numerical(
+        2.5, "-", "sample rate of the comparison over the band"
+    )
+    stop_band: float = numerical(70.0, "dB", "attenuation of the common filter")
+    band_of_table: float = numerical(
+        0.6,
+        "of the highest mode",
+        "largest band: above it, modes beyond the table are missing",
+    )
+    trigger_margin: int = numerical(
+        12, "samples", "samples before the trigger that may hold the first contact"
+    )
+    most_channels: int = numerical(256, "channels", "most channels that are read")
+    most_records: int = numerical(2000, "records", "most records that are read")
+    least_samples: int = numerical(256, "samples", "shortest record that is read")
+    most_samples: int = numerical(200_000, "samples", "longest record that is read")
+    least_pretrigger: int = numerical(
+        64, "samples", "shortest quiet start: offset, hum and noise come from it"
+    )
+    most_joints: int = numerical(64, "points", "most bolts or feet that are read")
+    most_modes: int = numerical(500, "modes", "most modes of a body that are read")
+
+
+HITS = HitSettings()

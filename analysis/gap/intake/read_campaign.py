@@ -2,6 +2,7 @@
 """Read `two-body-campaign/1` files: hits on two bodies, and nominal parameters."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,11 @@ from jointbench.acquisition.file_access.netcdf_read import read_array, read_attr
 from jointbench.acquisition.file_access.quoting import named, shown, visible
 from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.stated_scatter import (
+    NOTHING_STATED,
+    SCATTER_KEYS,
+    StatedScatter,
+)
 from jointbench.analysis.gap.model.two_body_model import two_body_model
 
 SCHEMA = "two-body-campaign/1"
@@ -75,6 +81,7 @@ def _campaign(path: Path, file: h5py.File) -> Campaign:
         model=two_body_model(nominal, spread),
         force=_samples(records, "force"),
         response=_samples(records, "accel"),
+        scatter=_scatter(where, file),
     )
 
 
@@ -171,8 +178,35 @@ def _finite_samples(place: str, dataset: h5py.Dataset) -> FloatArray:
     return samples
 
 
+def _scatter(where: str, file: h5py.File) -> StatedScatter:
+    """Return the scatter of the hits that the file states, all in SI units."""
+    if "scatter_sd" not in file.attrs:
+        return NOTHING_STATED
+    stated = _json_object(where, file, "scatter_sd", SCATTER_KEYS)
+    unknown = sorted(set(stated) - set(SCATTER_KEYS))
+    if unknown:
+        raise FormatError(
+            f"{where} has 'scatter_sd' with the key {visible(unknown[0])!r}; its keys "
+            f"are {', '.join(SCATTER_KEYS)}"
+        )
+    place = f"{where} in 'scatter_sd'"
+    return StatedScatter(**{k: _number(place, k, v) for k, v in stated.items()})
+
+
 def _nominal_attribute(where: str, file: h5py.File, name: str) -> dict[str, float]:
     """Return the numbers of a JSON attribute; the model checks for missing ones."""
+    found = _json_object(where, file, name, NOMINAL_KEYS)
+    return {
+        key: _number(f"{where} in {name!r}", key, found[key])
+        for key in NOMINAL_KEYS
+        if key in found
+    }
+
+
+def _json_object(
+    where: str, file: h5py.File, name: str, keys: Sequence[str]
+) -> dict[str, Any]:
+    """Return the object of a JSON attribute, which should have some of the keys."""
     text = read_attribute(file, name)
     try:
         found = json.loads(str(text))
@@ -184,13 +218,9 @@ def _nominal_attribute(where: str, file: h5py.File, name: str) -> dict[str, floa
     if not isinstance(found, dict):
         raise FormatError(
             f"{where} has {name!r} of {shown(text)}, a JSON object is required; "
-            f"write it with the keys {', '.join(NOMINAL_KEYS)}"
+            f"write it with the keys {', '.join(keys)}"
         )
-    return {
-        key: _number(f"{where} in {name!r}", key, found[key])
-        for key in NOMINAL_KEYS
-        if key in found
-    }
+    return found
 
 
 def _hit(place: str, record: h5py.Group) -> int:

@@ -61,6 +61,7 @@ def session_campaign(
         preload_reference=_reference(preload, nominal),
         model=nominal.model,
         repeatability=nominal.repeatability,
+        scatter=nominal.scatter,
     )
     return campaign, cut.left_out
 

@@ -97,6 +97,32 @@ def hold_out(
     return _checked(stepped, fit, bench, rivals)
 
 
+def hold_out_by_steps(fit: Fit, blocks: Blocks) -> HeldOut:
+    """Hold out each condition in turn by one Newton step, without any refit.
+
+    Args:
+        fit: a minimum, with its slopes.
+        blocks: groups of its rows.
+    """
+    condition = conditions_of(blocks)
+    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    chi2, dof = [], []
+    share = blocks.dof / fit.residual.size
+    for c in range(int(condition.max()) + 1):
+        rows = condition[blocks.group] == c
+        left = _left_out(fit, hessian, rows)
+        chi2.append(float(left @ left))
+        dof.append(share * rows.sum())
+    return HeldOut(np.array(chi2), np.array(dof))
+
+
+def _left_out(fit: Fit, hessian: FloatArray, rows: BoolArray) -> FloatArray:
+    """Return the residual of rows after the step of a fit without them."""
+    j, r = fit.jacobian[rows], fit.residual[rows]
+    step = np.linalg.lstsq(hessian - j.T @ j, j.T @ r, rcond=1e-12)[0]
+    return np.asarray(r + j @ step)
+
+
 def _stepped(fit: Fit, bench: Bench, bare: HeldOut | None) -> HeldOut:
     """Hold out each condition by one step, or by a fit where the step is long."""
     blocks = bench.blocks
@@ -109,7 +135,7 @@ def _stepped(fit: Fit, bench: Bench, bare: HeldOut | None) -> HeldOut:
         j, r = fit.jacobian[rows], fit.residual[rows]
         others = hessian - j.T @ j
         dof.append(share * rows.sum())
-        left = r + j @ np.linalg.lstsq(others, j.T @ r, rcond=1e-12)[0]
+        left = _left_out(fit, hessian, rows)
         chi2.append(float(left @ left))
         if rows.all():
             continue
@@ -187,6 +213,13 @@ class _Without(FitProblem):
         seen = FitProblem.residual(self, x, resolution)
         seen[self.hidden] = 0.0
         return seen
+
+    def base_slopes(self, x: FloatArray, resolution: Resolution) -> FloatArray | None:
+        """Return the slopes by the base, 0 in the ignored rows; None if unknown."""
+        slopes = FitProblem.base_slopes(self, x, resolution)
+        if slopes is not None:
+            slopes[self.hidden] = 0.0
+        return slopes
 
 
 def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolArray:

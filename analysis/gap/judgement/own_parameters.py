@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_above, gamma_above
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -139,7 +139,7 @@ def _test(
     seen = values > JUDGEMENT.least_eigenvalue * np.maximum(values[:, -1:], 1e-300)
     taken = float(np.sum(along[seen] ** 2 / values[seen]))
     free = max(int(seen.sum()) - n, 1)
-    chance = float(scipy.stats.chi2.sf(max(taken - allowed, 0.0), free))
+    chance = chi2_above(max(taken - allowed, 0.0), free)
     return Unlike(name, chance, taken - free)
 
 
@@ -157,6 +157,6 @@ def _line(residual: FloatArray, allowed: float) -> Unlike:
     found = []
     for row, count in zip(rows, counts, strict=True):
         top = float(row[2:-2].max())
-        chance = row.size * float(scipy.stats.gamma.sf(top - allowed, count))
+        chance = row.size * gamma_above(top - allowed, count)
         found.append(Unlike("line of the spectrum", chance, top - count))
     return min(found, key=lambda t: t.chance)

@@ -5,6 +5,10 @@ from dataclasses import dataclass
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
+from jointbench.analysis.gap.model.stated_scatter import (
+    NOTHING_STATED,
+    StatedScatter,
+)
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 TAIL = CAMPAIGN.tail_samples
@@ -29,6 +33,7 @@ class Campaign:
         continuous: True where the excitation never ends (a shaker), so that no
             hit can be cut out of it and no level spans the campaign.
         repeatability: relative, as stated [-]; None to estimate it from repeats.
+        scatter: expected scatter of the hits, as stated.
     """
 
     name: str
@@ -44,6 +49,7 @@ class Campaign:
     lead: int = 0
     continuous: bool = False
     repeatability: float | None = None
+    scatter: StatedScatter = NOTHING_STATED
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

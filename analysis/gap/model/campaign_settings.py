@@ -16,6 +16,12 @@ class CampaignSettings:
         "last samples of a record that are not compared: the anti-alias filter "
         "has no data after them",
     )
+    longest_stated_delay: float = numerical(
+        1e-3,
+        "s",
+        "stated scatter of a delay from which it is refused",
+        "a hit that is late by a millisecond is another hit",
+    )
     seen_gap: float = numerical(
         1.0,
         "-",

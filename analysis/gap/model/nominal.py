@@ -4,6 +4,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from jointbench.analysis.gap.model.stated_scatter import (
+    NOTHING_STATED,
+    StatedScatter,
+)
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 
@@ -19,9 +23,11 @@ class NominalParameters:
             hits have the same preload.
         repeatability: relative to the peak response [-]; None to estimate it from
             repeats.
+        scatter: expected scatter of the hits by direction, as stated.
     """
 
     model: LumpedModel
     points: Mapping[str, int]
     preload_reference: float | None = None
     repeatability: float | None = None
+    scatter: StatedScatter = NOTHING_STATED

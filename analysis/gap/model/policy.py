@@ -158,6 +158,28 @@ class Policy:
         "computing time: campaigns without an answer took up to 270 s",
         "-30 %: 0 of 16; +30 %: 0 of 16",
     )
+    floor_chi2: float = decision(
+        1.3,
+        "-",
+        "chi2/dof above which a fit of bolted bodies does not explain the hits",
+        "a prototype on 24 campaigns; the floor is not white, so chi2/dof of a correct "
+        "model is below 1",
+        "not measured",
+    )
+    floor_chi2_share: float = decision(
+        0.002,
+        "of the excess",
+        "share of the base's excess chi2/dof that an effect on bolted bodies may leave",
+        "a prototype on 24 campaigns",
+        "not measured",
+    )
+    floor_prior_limit: float = decision(
+        4.5,
+        "sd",
+        "deviation of a base parameter of bolted bodies above which a fit is rejected",
+        "a prototype on 24 campaigns; there are fifteen parameters and more",
+        "not measured",
+    )
     far_chi2: float = decision(
         30.0,
         "-",

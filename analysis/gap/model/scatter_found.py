@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scatter of the hits as reported: by direction, and hit by hit where it is large."""
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -68,8 +69,8 @@ class ScatterFound:
 
 def _size_words(direction: DirectionFound) -> str:
     if direction.unit == "s":
-        return f"{1e6 * direction.size:.2g} us"
-    return f"{100 * direction.size:.2g} %"
+        return f"{_two_digits(1e6 * direction.size)} us"
+    return f"{_two_digits(100 * direction.size)} %"
 
 
 def hit_words(hit: HitFound) -> str:
@@ -77,8 +78,21 @@ def hit_words(hit: HitFound) -> str:
     if not hit.direction:
         return f"record {hit.record}"
     if hit.unit == "s":
-        return f"record {hit.record} ({hit.direction} {1e6 * hit.value:+.2g} us)"
-    return f"record {hit.record} ({hit.direction} {100 * hit.value:+.2g} %)"
+        size = f"{_two_digits(1e6 * hit.value, '+')} us"
+    else:
+        size = f"{_two_digits(100 * hit.value, '+')} %"
+    return f"record {hit.record} ({hit.direction} {size})"
+
+
+def _two_digits(value: float, sign: str = "-") -> str:
+    """Return a number with two significant digits, never as a power of ten.
+
+    Args:
+        value: above the resolution of the records, so that none is rounded to 0.
+        sign: of the format: ``"+"`` shows that of a positive number, too.
+    """
+    decimals = max(1 - math.floor(math.log10(abs(value))), 0) if value else 0
+    return f"{value:{sign}.{decimals}f}"
 
 
 def scatter_json(found: ScatterFound) -> dict[str, Any]:

@@ -38,8 +38,8 @@ from jointbench.analysis.gap.residuals.noise_models import (
 )
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.residuals.scatter_directions import (
-    directions_of,
     scatter_columns,
+    scatter_directions,
 )
 from jointbench.analysis.gap.residuals.scatter_likelihood import (
     CompressedRecords,
@@ -107,7 +107,7 @@ def _scatter(
 ) -> HitScatter:
     """Estimate the scatter of all hits from the residual of those that are seen."""
     campaign = bench.campaign
-    directions = directions_of(bench)
+    directions = scatter_directions(campaign)
     if campaign.repeatability is not None:
         return no_scatter(directions, len(residual))
     rows = (residual / bench.noise.sigma[:, :, None]).reshape(len(residual), -1)

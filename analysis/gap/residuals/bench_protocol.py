@@ -2,7 +2,7 @@
 """Interface of a bench: residuals of a base model plus effects."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -116,7 +116,32 @@ class Bench(Scaled, Protocol):
         ...
 
 
-class MeasuredBench(Bench, Protocol):
+@runtime_checkable
+class SlopedBench(Protocol):
+    """A bench that computes slopes by its base in closed form, and limits its base."""
+
+    @property
+    def base_limits(self) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper bounds of the base coordinates, shape (n_base,) each."""
+        ...
+
+    def slopes(
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
+    ) -> FloatArray:
+        """Return d residual / d base, shape (n_rows, n_base)."""
+        ...
+
+
+class NoisyBench(Bench, Protocol):
+    """A bench that states the expected noise of its residual."""
+
+    @property
+    def noise(self) -> Noise:
+        """Expected noise of the residual."""
+        ...
+
+
+class MeasuredBench(NoisyBench, Protocol):
     """A bench with the records that it compares, for views and for model error."""
 
     @property
@@ -127,11 +152,6 @@ class MeasuredBench(Bench, Protocol):
     @property
     def entries(self) -> tuple[LumpedEffect, ...]:
         """The catalogue of this run."""
-        ...
-
-    @property
-    def noise(self) -> Noise:
-        """Expected noise of the residual."""
         ...
 
     def difference(

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.tail_probabilities import f_above, f_limit
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.noise_models import chi2_sd
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
@@ -90,6 +90,7 @@ def estimate_scatter(
         direction,
         _intercepts(records.along.shape),
         np.full(len(directions), np.inf),
+        np.array([d.expected / d.scale for d in directions]),
     )
     joints = frozenset(k for k, d in enumerate(directions) if d.is_joint)
     beside = 1.0 + policy.chi2_limit * chi2_sd(dof)
@@ -303,7 +304,7 @@ def _least_gain(count: int, policy: Policy) -> float:
     The sizes have absorbed the trend: it gains at most one unit a hit.
     """
     free = max(count - 2, 1)
-    squared = float(scipy.stats.f.isf(policy.trend_chance, 1, free))
+    squared = f_limit(policy.trend_chance, 1, free)
     return count * squared / (squared + free)
 
 
@@ -311,7 +312,7 @@ def _chance(drop: float, count: int) -> float:
     """Return the chance of a drop of -2 log likelihood by one value of many hits."""
     free = max(count - 2, 1)
     squared = free * np.expm1(min(max(drop, 0.0) / max(count, 1), 50.0))
-    return float(scipy.stats.f.sf(squared, 1, free))
+    return f_above(squared, 1, free)
 
 
 def _trends(problem: SizeProblem, seen: HitsSeen) -> list[_Systematic]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate
-from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.bench_protocol import Bench, SlopedBench
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import split
 
@@ -43,6 +43,16 @@ class FitProblem:
         terms = split(x, self.n_base, self.candidates)
         return self.bench.residual(x[: self.n_base], terms, resolution)
 
+    def base_slopes(self, x: FloatArray, resolution: Resolution) -> FloatArray | None:
+        """Return the slopes of the residual by the base, shape (n_rows, n_base).
+
+        None if the bench has none in closed form.
+        """
+        if not isinstance(self.bench, SlopedBench):
+            return None
+        terms = split(x, self.n_base, self.candidates)
+        return self.bench.slopes(x[: self.n_base], terms, resolution)
+
     def penalty(self, x: FloatArray) -> float:
         """Return the priors' share of the cost."""
         return float(np.sum(self.prior * (x - self.centre) ** 2))
@@ -52,6 +62,8 @@ def make_problem(bench: Bench, candidates: Sequence[Candidate]) -> FitProblem:
     """Collect bounds and priors of base and effects."""
     n_base = bench.base_sd.size
     lower, upper = [-3.0] * n_base, [3.0] * n_base
+    if isinstance(bench, SlopedBench):
+        lower, upper = (list(limit) for limit in bench.base_limits)
     prior = list(1.0 / bench.base_sd**2)
     centre = [0.0] * n_base
     for candidate in candidates:

@@ -55,9 +55,7 @@ def make_bench(
     sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
     floor = 1e-6 * np.abs(campaign.response).max()
     sigma = np.tile(np.maximum(sigma, floor), (records, 1))
-    directions = scatter_directions(
-        campaign.model, campaign.sample_rate, continuous=campaign.continuous
-    )
+    directions = scatter_directions(campaign)
     bench = LumpedBench(
         campaign=campaign,
         entries=entries,
@@ -90,10 +88,35 @@ def force_time_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     where = np.flatnonzero(strong.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:
         return (0, n), 0.0
-    first = max(int(where[0]) - RESIDUALS.force_padding, 0)
-    last = min(int(where[-1]) + RESIDUALS.force_padding, n)
+    padding = _padding(force, (int(where[0]), int(where[-1])), sigma)
+    first = max(int(where[0]) - padding, 0)
+    last = min(int(where[-1]) + padding, n)
     outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
     return (first, last), float(np.sqrt(np.mean(outside**2)))
+
+
+def _padding(force: FloatArray, hit: tuple[int, int], sigma: float) -> int:
+    """Return the least padding of the hits beyond which the force is noise.
+
+    Each sample within the time gate adds its noise to the prediction, where it rings on
+    in every mode; the ringing of the filter, which a time gate cuts off, is in
+    proportion to the force. So the time gate of a noisy record is narrow.
+
+    Args:
+        force: of all records [N], shape (n_records, n).
+        hit: first and last strong sample.
+        sigma: noise of the force [N].
+    """
+    first, last = hit
+    *narrow, widest = RESIDUALS.force_paddings
+    for padding in narrow if sigma > 0.0 else ():
+        before = force[:, max(first - widest, 0) : max(first - padding, 0)]
+        after = force[:, last + padding : last + widest]
+        beyond = np.concatenate([before, after], axis=1) / sigma
+        excess = float(np.mean(beyond**2)) - 1.0 if beyond.size else np.inf
+        if excess < RESIDUALS.padding_noise * np.sqrt(2.0 / beyond.size):
+            return padding
+    return widest
 
 
 def _blocks(campaign: Campaign) -> Blocks:

@@ -36,11 +36,19 @@ class ResidualSettings:
         "length at which a windowed record is cut",
         "the window has decayed to exp(-3.5)",
     )
-    force_padding: int = numerical(
-        48,
+    force_paddings: tuple[int, ...] = numerical(
+        (8, 12, 16, 24, 32, 48),
         "samples",
-        "samples kept on each side of a hit",
-        "ringing of the anti-alias filter",
+        "samples kept on each side of a hit: the fewest beyond which the force is "
+        "noise",
+        "ringing of the anti-alias filter; a relaxation at the limit of detection: "
+        "squared distance 43 with 48 samples, 60 with 16, 82 with the pulse alone",
+    )
+    padding_noise: float = numerical(
+        1.0,
+        "sd of chi2",
+        "excess of the force beyond a padding, up to which it is noise",
+        "a ringing that is missed is then below 5 % of the noise of those samples",
     )
     noise_band: tuple[float, float] = numerical(
         (0.30, 0.497),
@@ -83,6 +91,12 @@ class ResidualSettings:
         "-2 log likelihood",
         "loss without a direction above which it is significant whatever the others "
         "take over",
+    )
+    stated_spread: float = numerical(
+        0.7,
+        "-",
+        "prior sd of the logarithm of a size that the nominal parameters state",
+        "an operator knows the scatter of the hits within a factor of two",
     )
     scatter_iterations: int = numerical(
         25,

@@ -13,6 +13,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.catalogue.linear_effects import DELAY
+from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.lumped_residual import LumpedResidual
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
@@ -26,47 +27,34 @@ from jointbench.analysis.gap.residuals.scatter_record import (
 )
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.predict_records import respond
-from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 
-def scatter_directions(
-    model: LumpedModel, sample_rate: float, *, continuous: bool = False
-) -> tuple[ScatterDirection, ...]:
-    """Return the directions of a model, in the order of their columns.
+def scatter_directions(campaign: Campaign) -> tuple[ScatterDirection, ...]:
+    """Return the directions in which hits may scatter, in the order of their columns.
 
-    Args:
-        model: bodies, links and channels.
-        sample_rate: [Hz].
-        continuous: of records without hits: joints do not settle.
+    Joints do not settle in records without hits.
     """
-    joints = [x.name for x in model.links if x.joint and not continuous]
-    found = [ScatterDirection(FORCE_GAIN, "-", (0,))]
+    model, stated = campaign.model, campaign.scatter
+    joints = [x.name for x in model.links if x.joint and not campaign.continuous]
+    found = [ScatterDirection(FORCE_GAIN, "-", (0,), expected=stated.force_gain or 0.0)]
+    settling = stated.joint_stiffness or 0.0
     for name in joints:
-        found.append(ScatterDirection(JOINT + name, "-", (len(found),)))
-    if continuous:
+        at = (len(found),)
+        found.append(ScatterDirection(JOINT + name, "-", at, expected=settling))
+    if campaign.continuous:
         return tuple(found)
-    at, channels = len(found), len(model.channels)
-    gains = tuple(range(at, at + channels))
-    at += channels
-    step = 1.0 / sample_rate
+    first, channels = len(found), len(model.channels)
+    gains = tuple(range(first, first + channels))
+    late = first + channels
+    delays = tuple(range(late + 1, late + 1 + channels))
+    step = 1.0 / campaign.sample_rate
     return (
         *found,
-        ScatterDirection(CHANNEL_GAIN, "-", gains),
-        ScatterDirection(DELAY_OF_HIT, "s", (at,), step),
+        ScatterDirection(CHANNEL_GAIN, "-", gains, expected=stated.channel_gain or 0.0),
+        ScatterDirection(DELAY_OF_HIT, "s", (late,), step, stated.force_delay or 0.0),
         ScatterDirection(
-            DELAY_OF_CHANNEL,
-            "s",
-            tuple(range(at + 1, at + 1 + channels)),
-            step,
+            DELAY_OF_CHANNEL, "s", delays, step, stated.channel_delay or 0.0
         ),
-    )
-
-
-def directions_of(bench: LumpedResidual) -> tuple[ScatterDirection, ...]:
-    """Return the directions in which the hits of a bench may scatter."""
-    campaign = bench.campaign
-    return scatter_directions(
-        campaign.model, campaign.sample_rate, continuous=campaign.continuous
     )
 
 

@@ -24,12 +24,14 @@ class ScatterDirection:
         unit: of its size, ``"-"`` or ``"s"``.
         columns: derivatives of the model that share the size.
         scale: size in that unit of an internal size of 1.
+        expected: size that the nominal parameters state [unit]; 0 if none.
     """
 
     name: str
     unit: str
     columns: tuple[int, ...]
     scale: float = 1.0
+    expected: float = 0.0
 
     @property
     def is_joint(self) -> bool:

@@ -27,6 +27,7 @@ class SizeProblem:
             direction share their size.
         systematic: X, shape (n_records, n_columns, n_systematic).
         highest: largest size of each direction, shape (n_directions,).
+        expected: size that is stated, same shape; 0 where none is.
         rho: correlation between successive hits [-].
     """
 
@@ -34,6 +35,7 @@ class SizeProblem:
     direction: IntArray
     systematic: FloatArray
     highest: FloatArray
+    expected: FloatArray
     rho: float = 0.0
 
     def weighed(self, size: FloatArray) -> Weighed:
@@ -42,8 +44,22 @@ class SizeProblem:
         return weigh(self.records, each, self.rho)
 
     def deviance(self, size: FloatArray, *, restricted: bool = True) -> float:
-        """Return -2 log likelihood of sizes, shape (n_directions,)."""
-        return deviance(self.weighed(size), self.systematic, restricted=restricted)
+        """Return -2 log likelihood of sizes, (n_directions,), with their prior."""
+        bare = deviance(self.weighed(size), self.systematic, restricted=restricted)
+        return bare + self.surprise(size)
+
+    def surprise(self, size: FloatArray) -> float:
+        """Return -2 log of the prior of sizes: normal in the log of a stated size."""
+        off = self.off(size)
+        return float(off @ off)
+
+    def off(self, size: FloatArray) -> FloatArray:
+        """Return the logs of sizes over the stated ones, in prior sd."""
+        stated = self.expected > 0.0
+        near = np.maximum(size[stated], RESIDUALS.smallest_scatter)
+        off = np.zeros(size.size)
+        off[stated] = np.log(near / self.expected[stated]) / RESIDUALS.stated_spread
+        return off
 
 
 def likeliest_sizes(problem: SizeProblem, start: FloatArray) -> FloatArray:
@@ -62,6 +78,8 @@ def likeliest_sizes(problem: SizeProblem, start: FloatArray) -> FloatArray:
         # Other directions may take over what one of them no longer explains.
         if size[direction] == 0.0 or loss > RESIDUALS.clear_scatter_gain:
             continue
+        if problem.expected[direction] > 0.0:
+            continue
         without, least = descended(problem, without)
         if least - value < RESIDUALS.scatter_gain:
             size, value = without, least
@@ -77,7 +95,7 @@ def descended(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float
     """
     free = np.flatnonzero(size > 0.0)
     weighed = problem.weighed(size)
-    value = deviance(weighed, problem.systematic)
+    value = deviance(weighed, problem.systematic) + problem.surprise(size)
     damping = RESIDUALS.scatter_damping
     for _ in range(RESIDUALS.scatter_iterations if free.size else 0):
         slope, curvature = _slopes(problem, weighed, size, free)
@@ -95,7 +113,7 @@ def descended(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float
                 problem.highest[free],
             )
             there = problem.weighed(tried)
-            now = deviance(there, problem.systematic)
+            now = deviance(there, problem.systematic) + problem.surprise(tried)
             moved = now < value
             damping = damping / 5.0 if moved else 4.0 * damping + 0.1
         if not moved:
@@ -127,7 +145,10 @@ def _slopes(
     parts = variance[:, None, None] * np.where(own[:, None, :], along[None], 0.0)
     flat = parts.reshape(free.size, n * k)
     curvature = flat @ left @ flat.T
-    return slope, curvature + np.diag(np.abs(slope))
+    curvature += np.diag(np.abs(slope))
+    stated = np.where(problem.expected[free] > 0.0, 0.5, 0.0)
+    slope += problem.off(size)[free] / RESIDUALS.stated_spread
+    return slope, curvature + np.diag(stated / RESIDUALS.stated_spread**2)
 
 
 def regressed_sizes(records: CompressedRecords, direction: IntArray) -> FloatArray:
@@ -156,6 +177,7 @@ def of_repeats(problem: SizeProblem, groups: Sequence[IntArray]) -> SizeProblem:
         problem.direction,
         np.concatenate([means, problem.systematic[rows]], axis=2),
         np.full(problem.highest.size, np.inf),
+        problem.expected,
     )
 
 

@@ -25,7 +25,7 @@ FASTEST = RESPONSE.table_speed
 Curve = Callable[[FloatArray], FloatArray]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     """Interpolate a row of a table at x by cubics of continuous slope.
 
@@ -48,7 +48,7 @@ def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     return float(b + 0.5 * t * (c - a + t * bend))
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def curve_force(
     tables: FloatArray, row: int, travel: float, speed: float, r: float, v: float
 ) -> float:

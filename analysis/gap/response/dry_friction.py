@@ -18,6 +18,7 @@ from jointbench.analysis.gap.response.law_forces import (
     DRIFT,
     EARLIER,
     EXTRAPOLATED,
+    HOLD,
     LANES,
     LAW,
     LEAN,
@@ -39,13 +40,26 @@ _RIGID = RESPONSE.friction_rigid
 _PIECES = RESPONSE.friction_pieces
 _LAYER = RESPONSE.friction_layer
 _FAR = RESPONSE.friction_far
+_FASTEST = RESPONSE.table_speed
 
 
-@compiled()
+@compiled(forceinline=True)
+def _exponential_weights(x: float) -> tuple[float, float, float]:
+    """Return phi_1, phi_2 and phi_3 of an exponential integrator, for x <= 0."""
+    if x > -0.02:
+        third = (1.0 + x / 4.0 * (1.0 + x / 5.0 * (1.0 + x / 6.0))) / 6.0
+        second = 0.5 + x * third
+        return 1.0 + x * second, second, third
+    first = math.expm1(x) / x
+    second = (first - 1.0) / x
+    return first, second, (second - 0.5) / x
+
+
+@compiled(error_model="numpy")
 def follow_switch(
-    limit: float, width: float, start: float, drift: float, growth: float, slope: float
+    limit: float, width: float, start: float, drift: float, growth: float, hold: float
 ) -> tuple[float, float, float, float]:
-    """Follow v' = drift(t) - 2 slope limit tanh(v / width) over a step of length 1.
+    """Follow v' = drift(t) - hold limit tanh(v / width) over a step of length 1.
 
     Far from a speed of zero the force is constant; near it, each piece changes the
     speed by a part of `width`, and a speed that comes to rest there decays.
@@ -56,44 +70,47 @@ def follow_switch(
         start: speed at the start [m/s].
         drift: change of the speed by all else, on average over the step [m/s].
         growth: change of the drift over the step [m/s].
-        slope: change of the speed by a force that rises to 1 N in the step [m/s].
+        hold: change of the speed by a force of 1 N throughout the step [m/s].
 
     Returns:
         Force at the end [N]; its mean, first and second moment over the step [N], about
         the middle of the step.
 
     Source:
-        Hochbruck and Ostermann 2010, Acta Numerica 19, 209, eq. (2.27), for a piece.
+        Hochbruck, Ostermann and Schweitzer 2009, SIAM J. Numer. Anal. 47, 786, the
+        method exprb32 for a piece.
     """
     v, t, moment, second = start, 0.0, 0.0, 0.0
+    bend = math.tanh(v / width)
     for piece in range(_PIECES):
-        bend = math.tanh(v / width)
-        rate = drift + growth * (t - 0.5) - 2.0 * slope * limit * bend
+        rate = drift + growth * (t - 0.5) - hold * limit * bend
         steep, reach = 0.0, abs(v) - _FAR * width
         if reach < _LAYER * width:
-            steep = -2.0 * slope * limit * (1.0 - bend * bend) / width
+            steep = -hold * limit * (1.0 - bend * bend) / width
             reach = _LAYER * width
         elif v * rate > 0.0:
             reach = 1e300
         h = 1.0 - t
         if piece < _PIECES - 1:
             h = min(h, reach / (abs(rate) + 1e-300))
-        here = drift + growth * (t + 0.5 * h - 0.5)
-        grown = (here - 2.0 * slope * limit * bend) * h
-        if abs(steep * h) > 1e-9:
-            grown *= math.expm1(steep * h) / (steep * h)
-        force = (here - grown / h) / (2.0 * slope)
+        one, two, three = _exponential_weights(steep * h)
+        grown = (one * rate + two * growth * h) * h
+        changed = -hold * limit * (math.tanh((v + grown) / width) - bend)
+        grown += 2.0 * three * h * (changed - steep * grown)
         middle = t + 0.5 * h - 0.5
-        moment += force * h * middle
-        second += force * h * (middle * middle + h * h / 12.0)
-        v, t = v + grown, t + h
+        force = (drift + growth * middle - grown / h) / hold
+        v, t, before = v + grown, t + h, bend
+        bend = math.tanh(v / width)
+        lean = limit * (bend - before) * h * h / 12.0
+        moment += force * h * middle + lean
+        second += force * h * (middle * middle + h * h / 12.0) + 2.0 * middle * lean
         if t >= 1.0 - 1e-12:
             break
-    mean = (drift - (v - start)) / (2.0 * slope)
-    return limit * math.tanh(v / width), mean, moment, second
+    mean = (drift - (v - start)) / hold
+    return limit * bend, mean, moment, second
 
 
-@compiled()
+@compiled(error_model="numpy")
 def balance_friction(
     w: FloatArray,
     f: FloatArray,
@@ -142,14 +159,17 @@ def balance_friction(
             force, before = f[own + OWN], f[own + EARLIER]
             at = ports[a] * PORT + k
             v = _others_moved(w, f, kinds, ports, a, k, coupled, n_ports)
-            slope, start = w[at + SLOPE], w[at + PACE]
-            drift = v - start + slope * (before + f[own + EXTRAPOLATED])
+            slope, hold, start = w[at + SLOPE], w[at + HOLD], w[at + PACE]
+            drift = v - start + (hold - slope) * before
+            drift += slope * f[own + EXTRAPOLATED]
             growth, f[own + DRIFT] = drift - f[own + DRIFT], drift
             small = abs(force - before) < _SWITCH * abs(limit)
             if small or slope * abs(limit) < _RIGID * p[a, 1]:
                 continue
+            if not abs(drift) + abs(growth) < _FASTEST:
+                continue  # another law has run away; not a number fails as well
             force, mean, moment, second = follow_switch(
-                limit, p[a, 1], start, drift, growth, slope
+                limit, p[a, 1], start, drift, growth, hold
             )
             f[own + OWN] = force
             w[at + DEFECT] += mean - 0.5 * (before + force)
@@ -158,7 +178,7 @@ def balance_friction(
             w[at + SPREAD] += second - (force + before) / 24.0
 
 
-@compiled(inline="always")
+@compiled(forceinline=True)
 def _others_moved(
     w: FloatArray,
     f: FloatArray,

@@ -10,7 +10,8 @@ from the motion predicted with extrapolated forces, whose error is of the order 
 of a second difference and far below the noise; dry friction is solved for.
 
 All functions called in a step are inlined: passing arrays would take longer than the
-step itself.
+step itself. LLVM inlines them, so that each is typed and compiled once for all versions
+(docs/decisions/0174).
 """
 
 from typing import NamedTuple
@@ -68,7 +69,7 @@ VERSIONS = ((1,), (1, 2), (1, 2, 3), (1, 2, 3, 4))
 for the compiler: one port, several ports, and the same with laws of real joints."""
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _begin_step(
     w: FloatArray,
     f: FloatArray,
@@ -99,7 +100,7 @@ def _begin_step(
             w[port + GUESS + k] += f[at + EXTRAPOLATED]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _predict(w: FloatArray, n_modes: int, n_ports: int, several: bool) -> None:
     """Advance the modes with the extrapolated forces; add them to the motions."""
     if several:
@@ -108,7 +109,7 @@ def _predict(w: FloatArray, n_modes: int, n_ports: int, several: bool) -> None:
         predict_one_port(w, n_modes)
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _set_speeds(
     w: FloatArray,
     n_modes: int,
@@ -128,7 +129,7 @@ def _set_speeds(
         add_speed_one_port(w, n_modes)
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _end_step(
     w: FloatArray,
     f: FloatArray,
@@ -154,7 +155,7 @@ def _end_step(
             w[at + GUESS] = w[at + FORCE] - w[at + GUESS]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _add_to_samples(
     w: FloatArray, several: bool, out: FloatArray, step: int, first: int
 ) -> None:
@@ -179,7 +180,7 @@ def _add_to_samples(
                 out[q, step - 2, first + k] += far
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _keep_pace(
     w: FloatArray,
     n_modes: int,
@@ -195,7 +196,7 @@ def _keep_pace(
             w[p * PORT + PACE + k] = w[p * PORT + SPEED + k]
 
 
-@compiled(fastmath=True)
+@compiled(fastmath=True, error_model="numpy")
 def _integrate_lanes(
     displacement: FloatArray,
     velocity: FloatArray,
@@ -272,7 +273,7 @@ class LaneModes(NamedTuple):
     shapes: ComplexArray
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, error_model="numpy")
 def integrate_forces(
     displacement: FloatArray,
     velocity: FloatArray,

@@ -28,15 +28,17 @@ MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES, POWER_DAMPING)
 LANES = RESPONSE.lanes
 _STILL = RESPONSE.still_speed
 
-FORCE, GUESS, LAST, BEFORE, MOTION, SPEED, SLOPE, PACE = (i * LANES for i in range(8))
+FORCE, GUESS, LAST, BEFORE, MOTION, SPEED, PACE = (i * LANES for i in range(7))
 """Offsets within a port: force of its laws, its estimate, the two last motions, the
-motion, its rate, the change of that rate per unit force of the port in a step, and the
-rate at the start of the step."""
-DEFECT, LEAN, SHIFT, SPREAD = (i * LANES for i in range(8, 12))
+motion, its rate, and the rate at the start of the step."""
+SLOPE, HOLD = 7 * LANES, 8 * LANES
+"""The change of the rate by a force of the port that rises to 1 N within a step, and by
+one that is 1 N throughout."""
+DEFECT, LEAN, SHIFT, SPREAD = (i * LANES for i in range(9, 13))
 """Where a force jumps or bends within a step: its mean and first moment over the step
 less those of a straight line, and its first and second moment less those of the samples
 of a band-limited signal. Moments are about the middle of a step of length 1."""
-PORT = 12 * LANES
+PORT = 13 * LANES
 OWN, EARLIER, EXTRAPOLATED, DRIFT = (i * LANES for i in range(4))
 """Offsets within a law: its force, that of the previous step, the extrapolation, and,
 for dry friction, the change of the speed in the last step by all else."""
@@ -76,7 +78,7 @@ class IntegrationLaws(NamedTuple):
     band_limited: bool
 
 
-@compiled()
+@compiled(error_model="numpy")
 def rub(
     limit: float, width: float, v: float, slope: float, guess: float, start: float
 ) -> float:
@@ -100,7 +102,7 @@ def rub(
     return force
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def corner(before: float, now: float, edge: float) -> float:
     """Return the mean of max(r - edge, 0) over a step less that of its ends [m].
 
@@ -112,7 +114,7 @@ def corner(before: float, now: float, edge: float) -> float:
     return -0.5 * inside / (high - low + 1e-300)
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def force_of_real_joint(
     a: int, at: int, w: FloatArray, f: FloatArray, kinds: IntArray, p: FloatArray
 ) -> None:
@@ -142,7 +144,7 @@ def force_of_real_joint(
             f[own + k] = first * (v / size) * (size / third) ** second
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def force_without_memory(
     a: int,
     at: int,

@@ -8,6 +8,7 @@ settling or an attached oscillator changes them.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -56,8 +57,51 @@ def link_modes(
     Returns:
         Poles, one of each conjugate pair, and rows of the ports.
     """
+    linear = tuple(a for a in actions if a.entry.stiffness is not None)
+    return _modes(_Query(model, theta, conditions, tuple(links), linear))
+
+
+class _Query:
+    """Inputs of `link_modes`, equal if all of them are the same to the last bit."""
+
+    __slots__ = ("_key", "actions", "conditions", "links", "model", "theta")
+
+    def __init__(
+        self,
+        model: LumpedModel,
+        theta: FloatArray,
+        conditions: HitConditions,
+        links: tuple[int, ...],
+        actions: tuple[Action, ...],
+    ) -> None:
+        self.model, self.theta, self.conditions = model, theta, conditions
+        self.links, self.actions = links, actions
+        settling = conditions.settling
+        self._key = (
+            # Held by this record, so that no other object takes their place.
+            id(model),
+            tuple(id(a.entry) for a in actions),
+            tuple((a.kind, a.index, a.values.tobytes()) for a in actions),
+            theta.tobytes(),
+            conditions.preload.tobytes(),
+            conditions.progress.tobytes(),
+            None if settling is None else settling.tobytes(),
+            links,
+        )
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Query) and self._key == other._key
+
+
+@lru_cache(maxsize=16)
+def _modes(query: _Query) -> PortModes:
+    """Return the modes, kept for fits that change the parameters of a law alone."""
+    across = incidence(query.model)[list(query.links)]
     return modes_across(
-        model, theta, conditions, incidence(model)[list(links)], actions
+        query.model, query.theta, query.conditions, across, query.actions
     )
 
 

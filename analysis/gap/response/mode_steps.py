@@ -16,6 +16,7 @@ from jointbench.analysis.gap.response.law_forces import (
     DEFECT,
     FORCE,
     GUESS,
+    HOLD,
     LANES,
     LEAN,
     MOTION,
@@ -37,7 +38,7 @@ _INPUT, _INPUT_I, _SHAPE, _SHAPE_I = (i * LANES for i in range(4))
 _AT_PORT = 4 * LANES
 
 
-@compiled(inline="always")
+@compiled(forceinline=True)
 def mode_size(n_ports: int) -> int:
     """Return the size of a mode in the state of the lanes."""
     return _ONE_PORT_MODE if n_ports == 1 else _PORTS + n_ports * _AT_PORT
@@ -84,6 +85,8 @@ def resting_state(
                 own = push * shapes[m, p, k]
                 slope = own.real * pole.real - own.imag * pole.imag
                 w[p * PORT + SLOPE + k] += slope
+                held = (start + end) * inputs[m, p, k] * shapes[m, p, k] * pole
+                w[p * PORT + HOLD + k] += held.real
                 if n_ports == 1:
                     continue
                 there = at + _PORTS + p * _AT_PORT
@@ -96,7 +99,7 @@ def resting_state(
     return w
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def predict_one_port(w: FloatArray, n_modes: int) -> None:
     """Advance the modes with an estimated force; add them to the motion of the port."""
     for m in range(n_modes):
@@ -117,7 +120,7 @@ def predict_one_port(w: FloatArray, n_modes: int) -> None:
             w[MOTION + k] += moved
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def add_speed_one_port(w: FloatArray, n_modes: int) -> None:
     """Add the speed of the modes to that of the port."""
     for m in range(n_modes):
@@ -127,7 +130,7 @@ def add_speed_one_port(w: FloatArray, n_modes: int) -> None:
             w[SPEED + k] -= w[at + _POLE_I] * w[at + _IMAGINARY]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def correct_one_port(w: FloatArray, n_modes: int, uneven: bool) -> None:
     """Correct the modes by the force minus its estimate, which is in `GUESS`.
 
@@ -145,7 +148,7 @@ def correct_one_port(w: FloatArray, n_modes: int, uneven: bool) -> None:
             w[at + _IMAGINARY] -= w[at + _END_I] * w[GUESS + k]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _push_one_port(w: FloatArray, n_modes: int) -> None:
     """Move the modes by what the force of the step exceeds a straight line by.
 
@@ -160,7 +163,7 @@ def _push_one_port(w: FloatArray, n_modes: int) -> None:
             w[at + _IMAGINARY] -= w[at + _START_I] * start + w[at + _END_I] * end
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _push_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
     """Move the modes by what the forces of the step exceed straight lines by."""
     for m in range(n_modes):
@@ -181,7 +184,7 @@ def _push_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
             w[own + _IMAGINARY] -= w[own + _END] * end_i + w[own + _END_I] * end
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _drive(w: FloatArray, at: int, n_ports: int) -> None:
     """Write the drive of a mode by `GUESS` of all ports to its `_NEW`."""
     for k in range(LANES):
@@ -194,7 +197,7 @@ def _drive(w: FloatArray, at: int, n_ports: int) -> None:
             w[at + _NEW_I + k] += w[there + _INPUT_I + k] * w[guess + k]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def predict_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
     """Advance the modes with estimated forces; add them to the motion of all ports."""
     for m in range(n_modes):
@@ -220,7 +223,7 @@ def predict_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
                 w[motion + k] -= w[there + _SHAPE_I + k] * w[at + _IMAGINARY + k]
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def add_speed_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
     """Add the speed of the modes to that of all ports."""
     for m in range(n_modes):
@@ -234,7 +237,7 @@ def add_speed_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
                 w[speed + k] -= w[there + _SHAPE_I + k] * (pole * y + pole_i * x)
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def correct_ports(w: FloatArray, n_modes: int, n_ports: int, uneven: bool) -> None:
     """Correct the modes by the forces minus their estimates, which are in `GUESS`."""
     if uneven:

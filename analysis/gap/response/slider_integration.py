@@ -21,7 +21,7 @@ _STALE = 1e30
 """Loading coordinate that is invalid since the slider has unloaded."""
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     """Interpolate a row of evenly spaced points; constant above its end.
 
@@ -37,7 +37,7 @@ def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     return float(low + (position - index) * (tables[row, index + 1] - low))
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def slide(
     u: float,
     loading: float,
@@ -123,7 +123,7 @@ class Sliders(NamedTuple):
     weights: FloatArray
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def _turning_point(earlier: float, before: float, now: float) -> float:
     """Return the motion at which a step turns, or that at its start if it does not.
 
@@ -142,7 +142,7 @@ def _turning_point(earlier: float, before: float, now: float) -> float:
     return before
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def bank_forces(
     bank: Bank,
     w: FloatArray,

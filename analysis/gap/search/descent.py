@@ -46,7 +46,11 @@ def jacobian_of(
         columns[i] /= steps[i]
 
     shared = x.size - problem.own
-    each(difference, shared)
+    known = problem.base_slopes(x, resolution)
+    first = 0 if known is None else problem.n_base
+    if known is not None:
+        columns[:first] = known.T
+    each(lambda k: difference(first + k), shared - first)
     if problem.own:
         moved = x.copy()
         moved[shared:] += steps[shared:]

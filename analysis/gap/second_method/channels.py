@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import scipy.fft
 from scipy.interpolate import CubicSpline
-from scipy.signal import lfilter
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
@@ -99,6 +98,8 @@ def _lagging(signal: FloatArray, tau: float, step: float) -> FloatArray:
     """Solve tau y' + y = signal, exactly for the cubic spline through the points."""
     if tau <= 0.0:
         return signal
+    from scipy.signal import lfilter  # slow to import, rarely needed
+
     time = step * np.arange(signal.shape[-1])
     pieces = CubicSpline(time, signal, axis=-1).c
     left = np.exp(-step / tau)

@@ -32,11 +32,17 @@ from jointbench.analysis.structures.identification.parameter_intervals import (
 from jointbench.analysis.structures.identification.profile_likelihood import (
     profile_likelihood,
 )
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    is_mass,
+    structure_with_masses,
+)
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
     Prior,
     StiffnessProblem,
     pose_problem,
+    state_at,
     values_of,
 )
 from jointbench.analysis.structures.identification.structure_evidence import (
@@ -84,11 +90,13 @@ class StructureSearch:
         starts: of the search over the box of the reduction.
         seed: of the starts.
         profiles: whether to follow the likelihood of every parameter.
+        masses: of sensors that are unknown as well; None is none.
     """
 
     starts: int = 48
     seed: int = 0
     profiles: bool = True
+    masses: SensorMasses | None = None
 
 
 @one_thread()
@@ -112,7 +120,8 @@ def identify_structure(
         sought: names ``"<joint>.<direction>"``; default all.
         shared: names common to all states.
         priors: of stiffnesses and of factors on moduli (`with_moduli`), by name.
-        search: settings; None for the defaults.
+        search: settings, and masses of sensors that are unknown; None for the
+            defaults.
         structure: for a check of the optimum by one full solve; None skips it.
 
     Returns:
@@ -130,7 +139,13 @@ def identify_structure(
     search = search or StructureSearch()
     states(evidence)
     problem = pose_problem(
-        model, evidence, known=known, sought=sought, shared=shared, priors=priors
+        model,
+        evidence,
+        known=known,
+        sought=sought,
+        shared=shared,
+        priors=priors,
+        masses=search.masses,
     )
     optima = find_optima(problem, starts=search.starts, seed=search.seed)
     best = optima[0]
@@ -168,7 +183,8 @@ def _parameter(
     best, name = standing[0], problem.names[at]
     scale = best.noise()
     value = float(np.exp(best.unknowns[at]))
-    unit = "N s/m" if problem.damping[at] else "" if is_modulus(name) else "N/m"
+    plain = is_modulus(name) or is_mass(name)
+    unit = "N s/m" if problem.damping[at] else "" if plain else "N/m"
     sd = float(np.sqrt(scale * best.covariance()[at, at]))
     reason = _open_reason(problem, standing, at, sd, unit)
     if reason:
@@ -259,7 +275,7 @@ def _solution(
 
 def _state_fit(problem: StiffnessProblem, best: Optimum, row: int) -> StateFit:
     """Return measured and predicted modes of one state."""
-    model, evidence = problem.model, problem.evidence[row]
+    model, evidence = state_at(problem, best.unknowns, row)
     values = values_of(problem, best.unknowns, row)
     state = modal_state(model, values.stiffness)
     elastic = np.arange(state.rigid, model.modes)
@@ -288,13 +304,17 @@ def _full_checks(
     if structure is None:
         return ()
     checks = []
+    if problem.masses is not None:
+        factors = np.exp(best.unknowns[-len(problem.masses.names) :]).tolist()
+        structure = structure_with_masses(structure, problem.masses, factors)
     for row, evidence in enumerate(problem.evidence):
         stiffness = values_of(problem, best.unknowns, row).stiffness
-        reduced, bound = frequency_bound(problem.model, stiffness)
+        model, _ = state_at(problem, best.unknowns, row)
+        reduced, bound = frequency_bound(model, stiffness)
         named = dict(zip(problem.model.names, stiffness.tolist(), strict=True))
         joints = np.array([v for name, v in named.items() if not is_modulus(name)])
-        factors = {n.rpartition(".")[0]: v for n, v in named.items() if is_modulus(n)}
-        whole_mesh = scaled_structure(structure, factors) if factors else structure
+        moduli = {n.rpartition(".")[0]: v for n, v in named.items() if is_modulus(n)}
+        whole_mesh = scaled_structure(structure, moduli) if moduli else structure
         full = solve_full(whole_mesh, joints, problem.model.modes)
         elastic = (reduced > 0) & (full.natural_frequency > 0)
         reduced, bound = reduced[elastic], bound[elastic]

@@ -2,10 +2,10 @@
 """Least-squares descents from many starts, and their distinct ends."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import qmc
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.structures.identification.stiffness_problem import (
@@ -20,6 +20,8 @@ _DAMPING_START = 1e-2
 # Two ends are one solution if every parameter agrees to this in ln.
 _SAME = 0.02
 _MOST_STEPS = 100
+# Ends with nominal masses that are used where masses are unknown.
+_MOST_ENDS = 8
 # Most branches of solutions that are followed along undetermined unknowns ...
 _FOLLOWED = 4
 # ... and number of values of each such unknown over the whole box.
@@ -120,6 +122,8 @@ def find_optima(
         Distinct ends. States without shared unknowns are searched separately; a rival
         is then another end of one state with the best of all others.
     """
+    if problem.masses is not None:
+        return _with_masses(problem, starts, seed)
     searched = [
         _search(part, starts, seed + at)
         for at, (part, _) in enumerate(states_apart(problem))
@@ -135,9 +139,46 @@ def find_optima(
     return (_joined(problem, best), *(in_order(problem, rivals) if rivals else ()))
 
 
+def _with_masses(
+    problem: StiffnessProblem, starts: int, seed: int
+) -> tuple[Optimum, ...]:
+    """Search with the nominal masses, then from the ends with the masses unknown.
+
+    Masses of sensors couple all states, but move their unknowns little.
+    """
+    ends = find_optima(_without_masses(problem), starts=starts, seed=seed)
+    missing = np.zeros(problem.size - ends[0].unknowns.size)
+    found = [
+        descend(problem, np.concatenate([one.unknowns, missing]))
+        for one in ends[:_MOST_ENDS]
+    ]
+    return _followed(problem, found)
+
+
+def _without_masses(problem: StiffnessProblem) -> StiffnessProblem:
+    """Return the problem with the nominal masses of all sensors."""
+    count = 0 if problem.masses is None else len(problem.masses.names)
+    kept = slice(0, problem.size - count)
+    return replace(
+        problem,
+        names=problem.names[kept],
+        damping=problem.damping[kept],
+        low=problem.low[kept],
+        high=problem.high[kept],
+        prior=problem.prior[kept],
+        prior_sd=problem.prior_sd[kept],
+        masses=None,
+    )
+
+
 def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum, ...]:
     """Search an undivided problem; see `find_optima`."""
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
+    return _followed(problem, found)
+
+
+def _followed(problem: StiffnessProblem, found: list[Optimum]) -> tuple[Optimum, ...]:
+    """Follow undetermined unknowns from the ends of a search; return distinct ends."""
     limit = min(found, key=lambda end: end.chi2).limit()
     standing = [end for end in found if end.chi2 < limit]
     for branch in _branches(problem, standing)[:_FOLLOWED]:
@@ -235,6 +276,8 @@ def with_value(unknowns: FloatArray, at: int, value: float) -> FloatArray:
 
 def _starts(problem: StiffnessProblem, count: int, seed: int) -> list[FloatArray]:
     """Spread stiffness over the box; damping follows at light damping ratios."""
+    from scipy.stats import qmc  # slow to import
+
     low, high = np.log(problem.model.box[0]), np.log(problem.model.box[1])
     share = qmc.LatinHypercube(problem.size, seed=seed).random(count)
     points = low + (high - low) * share

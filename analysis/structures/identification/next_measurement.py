@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.structures.identification.sensor_masses import is_mass
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
     StiffnessProblem,
@@ -34,6 +35,8 @@ def what_to_measure(problem: StiffnessProblem, best: Optimum, at: int) -> str:
     Returns:
         One clause on what to measure and the resulting uncertainty.
     """
+    if is_mass(problem.names[at]):
+        return "weigh the sensor"
     row = int(np.flatnonzero(np.any(problem.columns == at, axis=1))[0])
     state = modal_state(problem.model, values_of(problem, best.unknowns, row).stiffness)
     values = values_of(problem, best.unknowns, row)

@@ -2,12 +2,16 @@
 """The identification problem: unknowns, their bounds, and residuals."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    with_mass_factors,
+)
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
     evidence_residual,
@@ -22,6 +26,9 @@ _BEYOND = 3.0
 _DAMPING_RANGE = (1e-7, 10.0)
 # Bounds of a factor on a modulus.
 _MODULUS_RANGE = (0.5, 2.0)
+# Bounds of a factor on the mass of a sensor, and the step of its derivative.
+_MASS_RANGE = (0.2, 5.0)
+_MASS_STEP = 1e-3
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
 # Singular values below this mean a standard deviation of 1e6 in ln: not determined.
@@ -68,6 +75,7 @@ class StiffnessProblem:
         high: bounds of the unknowns.
         prior: logarithms expected before the measurement, shape (n_unknowns,).
         prior_sd: their standard deviations, infinite without a prior.
+        masses: of sensors, whose factors are the last unknowns; None is none.
     """
 
     model: ReducedModel
@@ -80,6 +88,7 @@ class StiffnessProblem:
     high: FloatArray
     prior: FloatArray
     prior_sd: FloatArray
+    masses: SensorMasses | None = None
 
     @property
     def size(self) -> int:
@@ -131,6 +140,7 @@ def pose_problem(
     sought: Sequence[str] | None = None,
     shared: Sequence[str] = (),
     priors: Mapping[str, Prior] | None = None,
+    masses: SensorMasses | None = None,
 ) -> StiffnessProblem:
     """Set up the unknowns.
 
@@ -142,6 +152,7 @@ def pose_problem(
             damping are unknown; default all.
         shared: names of those common to all states; factors on moduli always are.
         priors: of stiffnesses and of factors on moduli, by name.
+        masses: of sensors that are unknown, common to all states.
 
     Returns:
         The problem.
@@ -176,12 +187,15 @@ def pose_problem(
             if len(evidence) > 1 and name not in shared and not is_modulus(name):
                 label = f"{one.label}:{label}"
             columns[row, at] = place.setdefault(label, len(place))
-    labels = list(place)
+    labels = [*place, *(masses.names if masses else ())]
     damping = np.array([label.endswith("_damping") for label in labels], float)
     low, high = _bounds(model, damping)
     scales = np.array([is_modulus(label) for label in labels], bool)
     low[scales], high[scales] = np.log(_MODULUS_RANGE)
     expected, expected_sd = _prior_logs(labels, priors)
+    if masses is not None:
+        low[len(place) :], high[len(place) :] = np.log(_MASS_RANGE)
+        expected_sd[len(place) :] = masses.deviations
     return StiffnessProblem(
         model,
         tuple(evidence),
@@ -193,6 +207,7 @@ def pose_problem(
         high,
         expected,
         expected_sd,
+        masses,
     )
 
 
@@ -246,12 +261,14 @@ def residuals(
 ) -> tuple[FloatArray, FloatArray]:
     """Return differences over standard deviations, and their derivatives."""
     rows, slopes = [], []
-    for at, evidence in enumerate(problem.evidence):
+    for at in range(len(problem.evidence)):
         values = values_of(problem, unknowns, at)
-        left, slope = evidence_residual(problem.model, evidence, values)
+        left, slope = evidence_residual(*state_at(problem, unknowns, at), values)
         whole = np.zeros((left.size, problem.size))
         sought = problem.columns[at] >= 0
         np.add.at(whole.T, problem.columns[at][sought], slope[:, sought].T)
+        for column in _mass_columns(problem):
+            whole[:, column] = _mass_slope(problem, unknowns, at, column)
         rows.append(left)
         slopes.append(whole)
     given = np.isfinite(problem.prior_sd)
@@ -259,6 +276,37 @@ def residuals(
     rows.append((unknowns - problem.prior)[given] * scale)
     slopes.append(np.eye(problem.size)[given] * scale[:, None])
     return np.concatenate(rows), np.concatenate(slopes)
+
+
+def state_at(
+    problem: StiffnessProblem, unknowns: FloatArray, row: int
+) -> tuple[ReducedModel, StructureEvidence]:
+    """Return model and measurement of one state, at the masses of the unknowns."""
+    model, evidence = problem.model, problem.evidence[row]
+    if problem.masses is None:
+        return model, evidence
+    factors = np.exp(unknowns[list(_mass_columns(problem))])
+    model, turn = with_mass_factors(model, problem.masses, factors)
+    return model, replace(
+        evidence, outputs=evidence.outputs @ turn, inputs=evidence.inputs @ turn
+    )
+
+
+def _mass_columns(problem: StiffnessProblem) -> range:
+    count = 0 if problem.masses is None else len(problem.masses.names)
+    return range(problem.size - count, problem.size)
+
+
+def _mass_slope(
+    problem: StiffnessProblem, unknowns: FloatArray, row: int, column: int
+) -> FloatArray:
+    """Return the derivative by the logarithm of a mass, which acts nearly linearly."""
+    values, ends = values_of(problem, unknowns, row), []
+    for sign in (1.0, -1.0):
+        moved = unknowns.copy()
+        moved[column] += sign * _MASS_STEP
+        ends.append(evidence_residual(*state_at(problem, moved, row), values)[0])
+    return np.asarray((ends[0] - ends[1]) / (2.0 * _MASS_STEP))
 
 
 def states_apart(
@@ -274,7 +322,8 @@ def states_apart(
         states share unknowns.
     """
     owners = [np.unique(row[row >= 0]) for row in problem.columns]
-    if len(owners) < 2 or sum(own.size for own in owners) > problem.size:
+    shared = problem.masses is not None
+    if len(owners) < 2 or shared or sum(own.size for own in owners) > problem.size:
         return ((problem, np.arange(problem.size)),)
     parts = []
     for at, own in enumerate(owners):

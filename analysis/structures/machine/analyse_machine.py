@@ -40,6 +40,7 @@ from jointbench.analysis.structures.machine.stability_lobes import (
     StabilityLobes,
     stability_lobes,
 )
+from jointbench.analysis.structures.machine.tool_bound import direct_bound
 from jointbench.analysis.structures.machine.tool_response import (
     oriented_response,
     rows_at,
@@ -54,6 +55,8 @@ _SAME_SHAPE, _SAME_FREQUENCY = 0.5, 1.4
 _SPEEDS = 600
 # Lines are spaced evenly in the logarithm from this share of the band.
 _LOWEST_LINE = 0.002
+# Least damping ratio of the lines around a pole, and their offset.
+_BESIDE = 1e-4
 
 
 def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> MachineResult:
@@ -79,7 +82,7 @@ def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> Machine
     rigid_one = _variant_result(lean, glued(machine), request)
     soft_one = _variant_result(lean, nominal, request)
     spread = None
-    if machine.deviations.any():
+    if machine.deviations.any() or machine.measured:
         spread = sample_joints(lean, request, soft_one.tool.frequency)
     if spread is not None:
         tool = replace(
@@ -102,6 +105,7 @@ def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> Machine
         size=(machine.assembled.model.size, lean.model.size),
         bound=float((bound / frequency).max()),
         turn=lean.turn,
+        speeds=machine.speeds,
     )
 
 
@@ -111,6 +115,9 @@ def _variant_result(
     state = lean.state(variant)
     poles = state.poles
     tool = _receptance(lean, poles, request)
+    if not lean.gyroscopic.any():
+        bound = direct_bound(lean, variant, state, request.tool, tool)
+        tool = replace(tool, bound=bound)
     motion = None
     if request.span is not None:
         few = poles.lowest(request.span.poles)
@@ -187,7 +194,9 @@ def _lines(request: MachineRequest, poles: PoleSet) -> FloatArray:
         return even
     each = max(5, request.lines // (2 * peaks.size))
     around = np.sinh(np.linspace(-3.0, 3.0, each)) / np.sinh(3.0) * 8.0
-    close = (peaks[:, None] * (1.0 + np.minimum(ratio, 0.1)[:, None] * around)).ravel()
+    # On an undamped pole there is no receptance: the middle line is beside it.
+    width = np.clip(ratio, _BESIDE, 0.1)[:, None]
+    close = (peaks[:, None] * (1.0 + width * (around + _BESIDE))).ravel()
     close = close[(close > low) & (close < request.band_hz)]
     return np.unique(np.concatenate([even, close]))
 

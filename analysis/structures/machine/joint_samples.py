@@ -12,8 +12,10 @@ from jointbench.analysis.structures.machine.lean_machine import (
     Variant,
     jointed,
     log_deviation,
+    whole_machine,
 )
 from jointbench.analysis.structures.machine.machine_request import MachineRequest
+from jointbench.analysis.structures.machine.reduce_machine import redrawn
 from jointbench.analysis.structures.machine.stability_lobes import (
     stability_limit,
 )
@@ -27,6 +29,8 @@ from jointbench.analysis.structures.reduction.full_modes import frequency_of
 # couple all.
 COUPLED_SAMPLE = 60
 _QUANTILES = (0.025, 0.975)
+# Draws of measured bodies at most: each is an assembly of its own.
+_MOST_DRAWS = 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,17 +46,21 @@ class SampledIntervals:
 def sample_joints(
     lean: LeanMachine, request: MachineRequest, lines: FloatArray
 ) -> SampledIntervals:
-    """Propagate the deviations of the joints by random samples, log-normal."""
+    """Propagate the deviations of joints, log-normal, and of measured bodies."""
     machine, nominal = lean.machine, jointed(lean.machine)
     deviation = log_deviation(machine.deviations)
     random = np.random.default_rng(request.seed)
-    steps = random.standard_normal((request.samples, *deviation.shape))
+    count = request.samples
+    if machine.measured:
+        count = min(count, _MOST_DRAWS)
+    steps = random.standard_normal((count, *deviation.shape))
     rows = rows_at(lean, request.tool)
     levels, sizes, statics, limits = [], [], [], []
     for step in steps:
         factor = np.exp(deviation * step)
         one = Variant(nominal.stiffness * factor[0], nominal.damping * factor[1])
-        state = lean.state(one, COUPLED_SAMPLE)
+        own = lean if not machine.measured else whole_machine(redrawn(machine, random))
+        state = own.state(one, COUPLED_SAMPLE)
         poles = state.poles
         response = poles.receptance(lines)[rows, rows]
         levels.append(frequency_of(state.eigenvalue[: request.modes]))

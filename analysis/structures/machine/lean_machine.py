@@ -60,7 +60,10 @@ class VariantState:
     Attributes:
         eigenvalue: [1/s^2], shape (n,).
         shapes: columns, orthonormal, shape (r, n).
-        damping: phi' C phi, loss of the bodies included [1/s], shape (n, n).
+        damping: phi' C phi, loss of the bodies and gyroscopic moments included [1/s],
+            shape (n, n).
+        loss_damping: the part of each mode that is loss of the bodies [1/s], shape
+            (n,).
         rows: motion x, y, z of all points in each mode, shape (n_rows, n).
         static: flexibility from and to all points [m/N], shape (n_rows, n_rows).
     """
@@ -68,12 +71,14 @@ class VariantState:
     eigenvalue: FloatArray
     shapes: FloatArray
     damping: FloatArray
+    loss_damping: FloatArray
     rows: FloatArray
     static: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "eigenvalue", "shapes", "damping", "rows", "static")
+        freeze(self, "eigenvalue", "shapes", "damping", "loss_damping", "rows")
+        freeze(self, "static")
 
     @property
     def poles(self) -> PoleSet:
@@ -92,12 +97,14 @@ class LeanMachine:
         model: in these coordinates.
         turn: from them to those of the assembly, shape (n, r).
         points: motion x, y, z of each point, shape (3, r), by name.
+        gyroscopic: of the bodies that turn [1/s], shape (r, r).
     """
 
     machine: ReducedMachine
     model: ReducedModel
     turn: FloatArray
     points: Mapping[str, FloatArray]
+    gyroscopic: FloatArray
 
     def state(self, variant: Variant, modes: int | None = None) -> VariantState:
         """Return the undamped modes of a variant.
@@ -117,12 +124,14 @@ class LeanMachine:
         shapes = found.shapes
         flex = self.model.spread.between(shapes)[: variant.damping.size]
         damping = np.tensordot(variant.damping, flex, 1)
-        damping += shapes.T @ self.model.damping @ shapes
-        loss = shapes.T @ self.model.loss @ shapes
-        damping += np.diag(viscous_loss(found.eigenvalue, loss))
+        damping += shapes.T @ (self.model.damping + self.gyroscopic) @ shapes
+        loss = viscous_loss(found.eigenvalue, shapes.T @ self.model.loss @ shapes)
+        damping += np.diag(loss)
         rows = np.concatenate(list(self.points.values()))
         static = rows @ np.linalg.solve(self.model.with_joints(values), rows.T)
-        return VariantState(found.eigenvalue, shapes, damping, rows @ shapes, static)
+        return VariantState(
+            found.eigenvalue, shapes, damping, loss, rows @ shapes, static
+        )
 
     def _floating(self, motions: FloatArray) -> str:
         """Return the message on bodies that motions without strain move."""
@@ -154,7 +163,7 @@ def lean_machine(machine: ReducedMachine, band_hz: float) -> LeanMachine:
     still = whole.strains.shape[1]
     rows = np.concatenate(list(machine.points.values()))
     columns = [np.zeros((whole.size, 0))]
-    for variant in machine_variants(machine):
+    for variant in _machine_variants(machine):
         values = machine.parameters(variant.stiffness, variant.rigid)
         found = solve_reduced(whole, values, whole.size)
         count = int(np.searchsorted(found.natural_frequency, band_hz)) + _SPARE
@@ -167,10 +176,19 @@ def lean_machine(machine: ReducedMachine, band_hz: float) -> LeanMachine:
         whole.restricted(turn),
         turn,
         {name: own @ turn for name, own in machine.points.items()},
+        turn.T @ machine.gyroscopic @ turn,
     )
 
 
-def machine_variants(machine: ReducedMachine) -> list[Variant]:
+def whole_machine(machine: ReducedMachine) -> LeanMachine:
+    """Return a machine in all coordinates of its bodies."""
+    model = machine.assembled.model
+    return LeanMachine(
+        machine, model, np.eye(model.size), machine.points, machine.gyroscopic
+    )
+
+
+def _machine_variants(machine: ReducedMachine) -> list[Variant]:
     """Return glued, jointed, each joint rigid alone, softer and stiffer."""
     nominal, damping = machine.stiffness, machine.damping
     everything = tuple(range(machine.rigid.size))

@@ -19,6 +19,7 @@ from jointbench.analysis.structures.machine.machine_parts import (
     Machine,
     MachineSpring,
 )
+from jointbench.analysis.structures.machine.measured_parts import MachineLink
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.parts import GROUND
 from jointbench.analysis.structures.matrices.structure import Structure, pick
@@ -49,12 +50,16 @@ _MATRICES = ("stiffness", "damping")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RawBody:
-    """A body before its reduction: matrices, rigid motions, surfaces, ports."""
+    """A body before its reduction: matrices, rigid motions, surfaces, ports.
+
+    `gyroscopic` is that of a turn about its axis at 1 rad/s; None is none.
+    """
 
     matrices: BodyMatrices
     motions: FloatArray
     surfaces: tuple[tuple[str, Surface], ...]
     ports: list[BodyPort]
+    gyroscopic: Sparse | None = None
 
 
 def solid_bodies(machine: Machine) -> tuple[dict[str, RawBody], tuple[PortJoint, ...]]:
@@ -105,7 +110,11 @@ def beam_bodies(machine: Machine) -> dict[str, RawBody]:
             source=BodySource.MATRICES,
         )
         found[beam.name] = RawBody(
-            matrices, motions, ((beam.name, beam_surface(beam)),), []
+            matrices,
+            motions,
+            ((beam.name, beam_surface(beam)),),
+            [],
+            beam.gyroscopic,
         )
     return found
 
@@ -122,7 +131,9 @@ def rigid_bodies(machine: Machine) -> dict[str, RawBody]:
             rigid=np.diag(1.0 / np.sqrt(weight)),
         )
         surfaces = ((part.name, rigid_surface(part)),)
-        found[part.name] = RawBody(matrices, np.eye(6), surfaces, [])
+        found[part.name] = RawBody(
+            matrices, np.eye(6), surfaces, [], Sparse(part.gyroscopic)
+        )
     return found
 
 
@@ -171,13 +182,33 @@ def _piece_rows(
 def rows_of_point(machine: Machine, name: str) -> tuple[str, Sparse]:
     """Return the body of a point, and the rows of its six motions."""
     point = machine.points[name]
-    carried = _carried(machine, point.body, point.position)
+    return _rows_of_position(machine, point.body, point.position)
+
+
+def _rows_of_position(
+    machine: Machine, body: str, position: tuple[float, float, float]
+) -> tuple[str, Sparse]:
+    carried = _carried(machine, body, position)
     if carried is not None:
-        return point.body, carried
-    structure = machine.structure
-    where = range_of(structure, point.body)
-    rows = pick(structure, point.body, point.position)
+        return body, carried
+    where = range_of(machine.structure, body)
+    rows = pick(machine.structure, body, position)
     return where.name, Sparse(rows[:, where.low : where.high])
+
+
+def link_joint(
+    machine: Machine, raw: dict[str, RawBody], link: MachineLink
+) -> PortJoint:
+    """Add the port of a link to its modelled body and return the joint."""
+    second: Side | None = link.second
+    if link.second is not None and link.position is not None:
+        body, rows = _rows_of_position(machine, link.second[0], link.position)
+        along = np.asarray(link.direction) / np.linalg.norm(link.direction)
+        port = f"{link.name}/2"
+        own = Sparse(Sparse(along[None]) @ rows[:3])
+        raw[body].ports.append(point_port(port, own))
+        second = (body, port)
+    return PortJoint(link.name, link.first, second, ("along",))
 
 
 def _carried(

@@ -2,13 +2,18 @@
 """Parts of a machine: solids, beams, rigid bodies, springs, points."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.analysis.structures.matrices.beam_body import BeamBody
+from jointbench.analysis.structures.machine.measured_parts import (
+    MachineLink,
+    MeasuredPart,
+    require_points,
+)
+from jointbench.analysis.structures.matrices.beam_body import BeamBody, cross_matrix
 from jointbench.analysis.structures.matrices.parts import GROUND
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.matrices.surface_motion import Attachment
@@ -28,12 +33,24 @@ class RigidPart:
         position: of its centre [m].
         mass: [kg].
         inertia: about the centre along x, y and z [kg m^2].
+        axis: about which it can turn, a principal axis; None is none.
     """
 
     name: str
     position: tuple[float, float, float]
     mass: float
     inertia: tuple[float, float, float]
+    axis: tuple[float, float, float] | None = None
+
+    @property
+    def gyroscopic(self) -> FloatArray:
+        """G of a turn about the axis at 1 rad/s [kg m^2], shape (6, 6)."""
+        found = np.zeros((6, 6))
+        if self.axis is not None:
+            axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
+            polar = float(axis**2 @ np.asarray(self.inertia))
+            found[3:, 3:] = -polar * cross_matrix(axis)
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +135,10 @@ class Machine:
         settings: values of the joints of `structure`, by name.
         springs: between bodies of any kind.
         points: by name.
+        speeds: of the beams and rigid bodies that turn about their axes, by name
+            [rad/s].
+        measured: bodies that were measured alone.
+        links: between these and other bodies.
     """
 
     structure: Structure
@@ -126,11 +147,17 @@ class Machine:
     settings: Mapping[str, JointSetting]
     springs: tuple[MachineSpring, ...]
     points: Mapping[str, MachinePoint]
+    speeds: Mapping[str, float] = field(default_factory=dict)
+    measured: tuple[MeasuredPart, ...] = ()
+    links: tuple[MachineLink, ...] = ()
 
     def __post_init__(self) -> None:
         """Check that names are used once, and that those named exist."""
         names = self.bodies
+        require_points(self.measured, self.links)
         all_of = [*names, *self.structure.joints, *(s.name for s in self.springs)]
+        all_of += [one.name for one in self.measured]
+        all_of += [one.name for one in self.links]
         twice = {one for one in all_of if all_of.count(one) > 1}
         if twice:
             raise UsageError(f"names of bodies and joints are given twice: {twice}")
@@ -146,10 +173,18 @@ class Machine:
                 raise UsageError(
                     f"point {name!r} is on {point.body!r}; bodies are {names}"
                 )
+        turning = [one.name for one in self.beams]
+        turning += [one.name for one in self.rigid if one.axis is not None]
+        for name in self.speeds:
+            if name not in turning:
+                raise UsageError(
+                    f"body {name!r} has a speed; beams, and rigid bodies with an axis, "
+                    f"can turn: {turning}"
+                )
 
     @property
     def bodies(self) -> list[str]:
-        """Names of all bodies: solids, beams, rigid ones."""
+        """Names of all modelled bodies: solids, beams, rigid ones."""
         return [
             *(one.name for one in self.structure.bodies),
             *(one.name for one in self.beams),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What is computed of a machine: glued, jointed, at its tool, in time."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +50,38 @@ class VariantModes:
         freeze(self, "oscillating", "shapes")
 
 
+# Lines below this share of the median around them are near an antiresonance.
+_ANTIRESONANCE = 0.1
+_AROUND = 10
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReceptanceBound:
+    """Largest error of the direct receptances by the reduction of the bodies.
+
+    Attributes:
+        frequency: lines [Hz], shape (n_lines,).
+        size: of the receptances x, y, z [m/N], shape (3, n_lines).
+        error: bound of their error [m/N], shape (3, n_lines).
+    """
+
+    frequency: FloatArray
+    size: FloatArray
+    error: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "frequency", "size", "error")
+
+    @property
+    def largest(self) -> float:
+        """Largest error over size, away from antiresonances [-]."""
+        wide = np.pad(self.size, ((0, 0), (_AROUND, _AROUND)), mode="reflect")
+        windows = np.lib.stride_tricks.sliding_window_view(wide, 2 * _AROUND + 1, 1)
+        away = self.size > _ANTIRESONANCE * np.median(windows, axis=2)
+        return float((self.error / self.size)[away].max())
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ToolReceptance:
     """The receptance at the tool.
@@ -62,6 +95,7 @@ class ToolReceptance:
         interval: 95 % interval of the sizes of the direct receptances [m/N], shape (2,
             3, n_lines); None without uncertainty.
         static_interval: of the direct ones [m/N], shape (2, 3); None without.
+        bound: of the error of the direct receptances; None if it is not known.
     """
 
     frequency: FloatArray
@@ -71,6 +105,7 @@ class ToolReceptance:
     at: FloatArray
     interval: FloatArray | None = None
     static_interval: FloatArray | None = None
+    bound: ReceptanceBound | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -170,6 +205,7 @@ class MachineResult:
         size: of the reduced machine, and of its few coordinates.
         bound: largest bound of the relative error of a jointed frequency [-].
         turn: from the coordinates of the shapes to those of the machine, shape (n, r).
+        speeds: of the bodies that turn, by name [rad/s].
     """
 
     glued: VariantResult
@@ -182,6 +218,7 @@ class MachineResult:
     size: tuple[int, int]
     bound: float
     turn: FloatArray
+    speeds: Mapping[str, float]
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

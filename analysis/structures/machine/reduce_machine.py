@@ -2,7 +2,7 @@
 """Each body of a machine reduced once, then closed over joints and springs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +15,21 @@ from jointbench.analysis.structures.machine.body_geometry import (
 from jointbench.analysis.structures.machine.machine_bodies import (
     RawBody,
     beam_bodies,
+    link_joint,
     rigid_bodies,
     rows_of_point,
     solid_bodies,
     spring_joint,
 )
 from jointbench.analysis.structures.machine.machine_parts import (
+    JointSetting,
     Machine,
+    MachineSpring,
+)
+from jointbench.analysis.structures.machine.measured_parts import (
+    MachineLink,
+    MeasuredPart,
+    rigid_link_stiffness,
 )
 from jointbench.analysis.structures.machine.rigid_joints import (
     rigid_joint,
@@ -36,15 +44,18 @@ from jointbench.analysis.structures.reduction.component import (
     Component,
     point_port,
 )
-from jointbench.analysis.structures.reduction.port_joints import PortJoint
+from jointbench.analysis.structures.reduction.port_joints import PortJoint, Side
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body
 from jointbench.analysis.structures.reduction.reduction_cache import (
     body_key,
     cached_component,
 )
 
-_MODES = 30
-_BOX = (1e5, 1e11)
+MACHINE_MODES = 30
+"""Modes that the assembly of a machine is asked for."""
+
+MACHINE_BOX = (1e5, 1e11)
+"""Stiffness of its joints [N/m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +70,7 @@ class MachineBody:
             see `orthonormal_motions`, shape (6, r).
         surfaces: for pictures, with names.
         motions: of the nodes of each surface, shape (3 n, r).
+        gyroscopic: of a turn about its axis at 1 rad/s [1], shape (r, r).
     """
 
     name: str
@@ -67,10 +79,11 @@ class MachineBody:
     rigid: FloatArray
     surfaces: tuple[tuple[str, Surface], ...]
     motions: tuple[FloatArray, ...]
+    gyroscopic: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "place", "stiffness", "rigid")
+        freeze(self, "place", "stiffness", "rigid", "gyroscopic")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +100,11 @@ class ReducedMachine:
         rigid: stiffness that makes each joint rigid, zero otherwise; these parameters
             of the assembly follow the nominal ones, shape (n_joints,) [N/m].
         points: motion x, y, z of each point, shape (3, r), by name.
+        sides: body and port of each point, by name.
         freedoms: of the meshes and beams before the reduction.
+        speeds: of the bodies that turn, by name [rad/s].
+        measured: bodies that were measured alone, the last ones.
+        band_hz: highest frequency of interest [Hz].
     """
 
     assembled: Assembled
@@ -98,7 +115,11 @@ class ReducedMachine:
     joints: tuple[PortJoint, ...]
     rigid: FloatArray
     points: Mapping[str, FloatArray]
+    sides: Mapping[str, Side]
     freedoms: int
+    speeds: Mapping[str, float]
+    measured: tuple[MeasuredPart, ...] = ()
+    band_hz: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -109,6 +130,16 @@ class ReducedMachine:
         """Number of the joint of every nominal value, shape (n_parameters,)."""
         counts = [len(joint.directions) for joint in self.joints]
         return np.repeat(np.arange(len(counts)), counts)
+
+    @property
+    def gyroscopic(self) -> FloatArray:
+        """G at the speeds of the bodies [1/s], antisymmetric, shape (n, n)."""
+        found = np.zeros((self.assembled.model.size,) * 2)
+        for one in self.bodies:
+            speed = self.speeds.get(one.name, 0.0)
+            if speed:
+                found[np.ix_(one.place, one.place)] += speed * one.gyroscopic
+        return found
 
     def parameters(
         self, stiffness: FloatArray, rigid: Sequence[int] = ()
@@ -144,33 +175,89 @@ def reduce_machine(
     raw, joints = solid_bodies(machine)
     raw |= beam_bodies(machine) | rigid_bodies(machine)
     extra = [spring_joint(machine, raw, one) for one in machine.springs]
-    point_of = {}
+    point_of: dict[str, Side] = {}
     for name in machine.points:
         body, rows = rows_of_point(machine, name)
         raw[body].ports.append(point_port(f"point {name}", Sparse(rows[:3])))
         point_of[name] = (body, f"point {name}")
-    every = (*joints, *extra)
-    rigid = [rigid_joint(raw, one) for one in every]
+    links = [link_joint(machine, raw, one) for one in machine.links]
+    every = (*joints, *extra, *links)
+    rigid = [rigid_joint(raw, one) for one in (*joints, *extra)]
+    rigid += [replace(one, name=f"{one.name} rigid") for one in links]
     components = [_reduced(one, band_hz, cache) for one in raw.values()]
+    components += [one.component(band_hz) for one in machine.measured]
     assembled = assemble_components(
-        components, [*every, *rigid], box=_BOX, modes=_MODES
+        components, [*every, *rigid], box=MACHINE_BOX, modes=MACHINE_MODES
     )
-    values = [_values(machine, one.name) for one in every]
+    values = nominal_values(machine.settings, (*machine.springs, *machine.links), every)
+    held = [rigid_stiffness(raw, one) for one in (*joints, *extra)]
+    held += [rigid_link_stiffness(components, one) for one in machine.links]
+    meshed = [
+        _machine_body(one, component, place)
+        for one, component, place in zip(
+            raw.values(), components, assembled.places, strict=False
+        )
+    ]
     return ReducedMachine(
         assembled=assembled,
-        bodies=tuple(
-            _machine_body(one, component, place)
-            for one, component, place in zip(
-                raw.values(), components, assembled.places, strict=True
-            )
-        ),
-        stiffness=np.concatenate([one[0] for one in values]),
-        damping=np.concatenate([one[1] for one in values]),
-        deviations=np.concatenate([one[2] for one in values], axis=1),
+        bodies=(*meshed, *_measured_bodies(assembled, len(meshed))),
+        stiffness=values[0],
+        damping=values[1],
+        deviations=values[2:],
         joints=tuple(every),
-        rigid=np.array([rigid_stiffness(raw, one) for one in every]),
+        rigid=np.array(held),
         points={name: assembled.rows(side) for name, side in point_of.items()},
+        sides=point_of,
         freedoms=sum(one.matrices.mass.shape[0] for one in raw.values()),
+        speeds=machine.speeds,
+        measured=machine.measured,
+        band_hz=band_hz,
+    )
+
+
+def _measured_bodies(assembled: Assembled, first: int) -> list[MachineBody]:
+    """Return the bodies without a mesh: their rigid motions are part of their modes."""
+    return [
+        MachineBody(
+            name=one.name,
+            place=place,
+            stiffness=one.stiffness,
+            rigid=np.zeros((6, one.size)),
+            surfaces=(),
+            motions=(),
+            gyroscopic=np.zeros((one.size,) * 2),
+        )
+        for one, place in zip(
+            assembled.components[first:], assembled.places[first:], strict=True
+        )
+    ]
+
+
+def redrawn(machine: ReducedMachine, random: np.random.Generator) -> ReducedMachine:
+    """Return a machine whose measured bodies are drawn from their uncertainty.
+
+    Args:
+        machine: with measured bodies.
+        random: source of the draw.
+    """
+    whole = machine.assembled
+    first = len(whole.components) - len(machine.measured)
+    drawn = [one.drawn(random, machine.band_hz) for one in machine.measured]
+    assembled = assemble_components(
+        [*whole.components[:first], *drawn],
+        whole.joints,
+        box=MACHINE_BOX,
+        modes=MACHINE_MODES,
+    )
+    meshed = [
+        replace(one, place=place)
+        for one, place in zip(machine.bodies[:first], assembled.places, strict=False)
+    ]
+    return replace(
+        machine,
+        assembled=assembled,
+        bodies=(*meshed, *_measured_bodies(assembled, first)),
+        points={name: assembled.rows(side) for name, side in machine.sides.items()},
     )
 
 
@@ -181,22 +268,39 @@ def _reduced(raw: RawBody, band_hz: float, cache: Path | None) -> Component:
     )
 
 
-def _values(machine: Machine, name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stiffness, damping and both deviations of a joint or spring.
+def nominal_values(
+    settings: Mapping[str, JointSetting],
+    springs: Sequence[MachineSpring | MachineLink],
+    joints: Sequence[PortJoint],
+) -> FloatArray:
+    """Return stiffness, damping and their relative deviations of all joints.
 
     Coupled matrices are multiplied by one.
+
+    Args:
+        settings: of the joints over areas, by name.
+        springs: between pieces, and links of measured bodies.
+        joints: in the order of the parameters.
+
+    Returns:
+        Shape (4, n_parameters).
     """
-    if name in machine.settings:
-        one = machine.settings[name]
-        stiffness, damping = np.array(one.stiffness), np.array(one.damping)
-        deviations = (one.stiffness_sd, one.damping_sd)
-    else:
-        spring = next(s for s in machine.springs if s.name == name)
-        stiffness, damping = np.array(spring.stiffness), np.array(spring.damping)
-        if spring.matrices is not None:
-            stiffness, damping = np.array([1.0, 0.0]), np.array([0.0, 1.0])
-        deviations = spring.deviations
-    return stiffness, damping, np.outer(deviations, np.ones(stiffness.size))
+    named = {one.name: one for one in springs}
+    found = [np.zeros((4, 0))]
+    for joint in joints:
+        if joint.name in settings:
+            one = settings[joint.name]
+            values: list[tuple[float, ...]] = [one.stiffness, one.damping]
+            deviations = (one.stiffness_sd, one.damping_sd)
+        else:
+            spring = named[joint.name]
+            values = [spring.stiffness, spring.damping]
+            if spring.matrices is not None:
+                values = [(1.0, 0.0), (0.0, 1.0)]
+            deviations = spring.deviations
+        spread = np.outer(deviations, np.ones(len(joint.directions)))
+        found.append(np.concatenate([np.array(values), spread]))
+    return np.concatenate(found, axis=1)
 
 
 def _machine_body(raw: RawBody, component: Component, place: IntArray) -> MachineBody:
@@ -209,4 +313,13 @@ def _machine_body(raw: RawBody, component: Component, place: IntArray) -> Machin
         rigid=rows @ component.basis,
         surfaces=raw.surfaces,
         motions=tuple(one.rows @ component.basis for _, one in raw.surfaces),
+        gyroscopic=_turning(raw, component),
     )
+
+
+def _turning(raw: RawBody, component: Component) -> FloatArray:
+    """Return the gyroscopic matrix of a body in reduced coordinates."""
+    if raw.gyroscopic is None:
+        return np.zeros((component.size,) * 2)
+    found = component.basis.T @ (raw.gyroscopic @ component.basis)
+    return np.asarray(0.5 * (found - found.T))

@@ -4,8 +4,8 @@
 Bending with shear, rotary inertia, stretch and torsion of straight, stepped beams.
 Shape functions are the static solutions of a uniform element, so that a point load at a
 node is exact for any number of elements. Frequencies converge with the square of the
-length of an element, because shear is constant within it. Gyroscopic moments of turning
-shafts are not included.
+length of an element, because shear is constant within it. A beam that turns about its
+axis has gyroscopic moments.
 """
 
 from collections.abc import Sequence
@@ -87,6 +87,8 @@ class BeamBody:
         mass: M, same shape.
         radius: outer, at each node [m], shape (n_nodes,).
         loss_factor: of the material [-].
+        gyroscopic: G of a turn about the axis at 1 rad/s: moments are G times velocity
+            [kg m^2], antisymmetric, same shape as M.
     """
 
     name: str
@@ -94,7 +96,8 @@ class BeamBody:
     stiffness: Sparse
     mass: Sparse
     radius: FloatArray
-    loss_factor: float = 0.0
+    loss_factor: float
+    gyroscopic: Sparse
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -123,7 +126,7 @@ class BeamBody:
                 f"node of beam {self.name!r}; at most {reach:.3g} m is on it"
             )
         carried = np.eye(6)
-        carried[:3, 3:] = -_cross(point - self.nodes[at])
+        carried[:3, 3:] = -cross_matrix(point - self.nodes[at])
         rows = np.zeros((6, 6 * len(self.nodes)))
         rows[:, 6 * at : 6 * at + 6] = carried
         return Sparse(rows)
@@ -164,17 +167,24 @@ def beam_body(
     along = np.concatenate([[0.0], np.cumsum(steps)])
     nodes = np.asarray(begin, float) + np.outer(along, axis / length)
     size = 6 * nodes.shape[0]
-    stiffness, mass = np.zeros((size, size)), np.zeros((size, size))
+    stiffness, mass, gyroscopic = (np.zeros((size, size)) for _ in range(3))
     turn = np.kron(np.eye(4), _frame(axis / length))
     for at, (one, step) in enumerate(zip(pieces, steps, strict=True)):
         own = slice(6 * at, 6 * at + 12)
         k, m = _element(one, step, material)
         stiffness[own, own] += turn.T @ k @ turn
         mass[own, own] += turn.T @ m @ turn
+        gyroscopic[own, own] += turn.T @ _gyroscopic(one, step, material) @ turn
     half = [one.diameter / 2 for one in pieces]
     radius = np.maximum([half[0], *half], [*half, half[-1]])
     return BeamBody(
-        name, nodes, Sparse(stiffness), Sparse(mass), radius, material.loss_factor
+        name,
+        nodes,
+        Sparse(stiffness),
+        Sparse(mass),
+        radius,
+        material.loss_factor,
+        Sparse(gyroscopic),
     )
 
 
@@ -186,7 +196,7 @@ def _frame(axis: FloatArray) -> FloatArray:
     return np.stack([axis, second, np.cross(axis, second)])
 
 
-def _cross(arm: FloatArray) -> FloatArray:
+def cross_matrix(arm: FloatArray) -> FloatArray:
     """Return the matrix of the cross product from the left."""
     x, y, z = arm
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -229,10 +239,7 @@ def _bending(
     rigid = material.youngs_modulus * section.second_moment
     sheared = section.shear_factor(material.poisson_ratio) * shear * section.area
     g = rigid / sheared
-    # Deflection a + b x + c x^2 + d x^3, slope of the section b + 2 c x + (3 x^2 + 6
-    # g) d.
-    ends = [row for x in (0.0, length) for row in _both(np.array([x]), g)]
-    polynomial = np.linalg.inv(np.concatenate(ends))
+    polynomial = _polynomial(length, g)
     point, weight = np.polynomial.legendre.leggauss(_GAUSS)
     x, weight = 0.5 * length * (1.0 + point), 0.5 * length * weight
     deflection, slope = (one @ polynomial for one in _both(x, g))
@@ -246,6 +253,39 @@ def _bending(
     stiffness = rigid * square(curved) + sheared * square(glide)
     inertia = section.area * square(deflection) + section.second_moment * square(slope)
     return stiffness, material.density * inertia
+
+
+def _polynomial(length: float, g: float) -> FloatArray:
+    """Return the coefficients of the static shapes of deflection and slope.
+
+    Deflection a + b x + c x^2 + d x^3, slope of the section b + 2 c x + (3 x^2 + 6
+    g) d.
+    """
+    ends = [row for x in (0.0, length) for row in _both(np.array([x]), g)]
+    return np.asarray(np.linalg.inv(np.concatenate(ends)))
+
+
+def _gyroscopic(section: BeamSection, length: float, material: Material) -> FloatArray:
+    """Return G in the frame of the axis, at 1 rad/s about it.
+
+    The angular momentum along the axis follows the sections as they tilt.
+    """
+    shear = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio))
+    factor = section.shear_factor(material.poisson_ratio)
+    g = (
+        material.youngs_modulus
+        * section.second_moment
+        / (factor * shear * section.area)
+    )
+    point, weight = np.polynomial.legendre.leggauss(_GAUSS)
+    x, weight = 0.5 * length * (1.0 + point), 0.5 * length * weight
+    slope = _both(x, g)[1] @ _polynomial(length, g)
+    about_y, about_z = np.zeros((2, x.size, 12))
+    about_z[:, (1, 5, 7, 11)] = slope
+    about_y[:, (2, 4, 8, 10)] = -slope * np.array([1.0, -1.0, 1.0, -1.0])
+    polar = material.density * 2.0 * section.second_moment
+    half = polar * (about_y * weight[:, None]).T @ about_z
+    return np.asarray(half - half.T)
 
 
 def _both(x: FloatArray, g: float) -> tuple[FloatArray, FloatArray]:

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import qr
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData, NoModeFound
 from jointbench.analysis.structures.measured.frf_coupling import FrfBlock
 from jointbench.analysis.structures.measured.measured_body import ModalTable
+from jointbench.analysis.structures.measured.mode_above import mode_above
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
@@ -22,6 +23,8 @@ _REFERENCES = 2
 _POWERS = 2
 # Lines needed for each unknown of an FRF.
 _LINES_EACH = 4
+# Damping ratio of a mode above the band of a body without modes in it.
+_DAMPING = 0.005
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +105,8 @@ def fit_frfs(
 ) -> FittedFrfs:
     """Fit modes, rigid motions and the flexibility above the band to FRFs.
 
+    A mode just above the band is one of the modes, where the FRFs need it.
+
     Args:
         block: FRFs of a free body between all of its points.
         band: lowest and highest frequency of the fit [Hz]; above the suspension.
@@ -117,7 +122,9 @@ def fit_frfs(
         Ewins, Modal Testing (2000), sec. 4.4 (residual terms of a linear fit).
     """
     keep = (block.frequency >= band[0]) & (block.frequency <= band[1])
-    frequency, frequency_sd, ratio, ratio_sd = _poles(block, band)
+    frequency, frequency_sd, ratio, ratio_sd = _with_mode_above(
+        block, band, _poles(block, band)
+    )
     unknowns = frequency.size + 2 + powers
     if np.count_nonzero(keep) < _LINES_EACH * unknowns:
         raise BadData(
@@ -187,6 +194,38 @@ def _poles(
         found.damping_ratio[inside],
         found.damping_ratio_sd[inside],
     )
+
+
+def _with_mode_above(
+    block: FrfBlock,
+    band: tuple[float, float],
+    poles: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Append a mode just above the band where the FRFs need one."""
+    frequency, frequency_sd, ratio, ratio_sd = poles
+    damping = float(np.median(ratio)) if ratio.size else _DAMPING
+    columns = [_power(power) for power in range(-1, _POWERS + 1)]
+    columns += [
+        _pole(w, z)
+        for w, z in zip((2.0 * np.pi * frequency).tolist(), ratio.tolist(), strict=True)
+    ]
+    found = mode_above(block, band, columns, damping)
+    if found is None:
+        return poles
+    return (
+        np.append(frequency, found[0]),
+        np.append(frequency_sd, found[1]),
+        np.append(ratio, damping),
+        np.append(ratio_sd, damping),
+    )
+
+
+def _power(power: int) -> Callable[[ComplexArray], ComplexArray]:
+    return lambda s: np.asarray(s ** (2 * power))
+
+
+def _pole(omega: float, ratio: float) -> Callable[[ComplexArray], ComplexArray]:
+    return lambda s: np.asarray(1.0 / (s**2 + 2.0 * ratio * omega * s + omega**2))
 
 
 def _weighted(

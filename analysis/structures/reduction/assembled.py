@@ -15,6 +15,7 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.reduction.assembled_response import (
     DampedModes,
     complex_modes,
+    frf_bound,
     receptance,
 )
 from jointbench.analysis.structures.reduction.component import Component
@@ -119,6 +120,28 @@ class Assembled:
         """
         lines = np.asarray(2j * np.pi * frequency, complex)
         return receptance(self.model, values, lines, outputs, inputs)
+
+    def frf_bound(
+        self, values: JointValues, frequency: FloatArray, side: Side
+    ) -> FloatArray:
+        """Bound the error of receptances between the rows of a port [m/N].
+
+        Args:
+            values: of the joints.
+            frequency: lines [Hz], shape (n_lines,); the highest is that of `frf`.
+            side: body and port.
+
+        Returns:
+            Against the full mesh, shape (n_rows, n_rows, n_lines).
+        """
+        omega = np.asarray(2.0 * np.pi * frequency)
+        number = self.number(side[0])
+        residual = self.components[number].residual
+        rows = self.rows(side)
+        columns = slice(0, len(rows))
+        if residual is not None:
+            columns = residual.columns()[side[1]]
+        return frf_bound(self.model, values, omega, rows, (number, columns))
 
     def energy(self, values: JointValues, shape: FloatArray) -> dict[str, float]:
         """Return the share of the strain energy of a shape by joint and body [-].

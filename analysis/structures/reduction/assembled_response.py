@@ -6,29 +6,40 @@ dampers locked, and the static responses to the loads; the small state matrix gi
 poles and residues, and every line is a sum over them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.structures.reduction.dense_modes import shifted_inverse
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
+from jointbench.analysis.structures.reduction.receptance_bound import (
+    DampedSolution,
+    receptance_bound,
+)
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     ReducedModes,
+    solve_below,
     solve_reduced,
 )
 
-# Part of a direction outside of the others below which it is dropped.
-_DEPENDENT = 1e-7
+# Part of a direction outside of the others below which it is dropped, also of the
+# responses that follow decays.
+_DEPENDENT, _DECAY_DEPENDENT = 1e-7, 1e-6
 # Modes are kept up to this multiple of the highest line.
 _REACH = 1.2
 # Terms of the series of the response to a load.
 _TERMS = 4
 # Dampers are light if the largest damping ratio of a mode stays below this.
 _LIGHT = 0.02
-# Shares of the highest line at which dampers are replaced by springs.
-_LOCKED = (1.0, 0.2)
+# Strong dampers: positive real s, as shares of the highest line, at which responses are
+# solved exactly; they follow decays.
+_DECAYS = np.geomspace(0.01, 2.0, 14)
+# The bound is that of a projection on the modes up to this multiple of the last line.
+_BOUND_REACH = 2.5
+# ... and on those with dampers replaced by springs at these shares of that line.
+_BOUND_LOCKED = (1.0, 0.1)
 # Least ratio of imaginary to real part of an oscillating pole.
 _SWINGS = 0.02
 
@@ -68,7 +79,13 @@ class DampedModes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Projected:
-    """Second-order matrices over a few orthonormal directions; the mass is unit."""
+    """Second-order matrices over a few orthonormal directions; the mass is unit.
+
+    Attributes:
+        space: the directions as columns, shape (r, m).
+        stiffness: with structural damping [1/s^2], shape (m, m).
+        damping: viscous [1/s], shape (m, m).
+    """
 
     space: FloatArray
     stiffness: ComplexArray
@@ -80,51 +97,68 @@ def damping_matrix(model: ReducedModel, values: JointValues) -> FloatArray:
     return np.asarray(model.damping + model.spread.total(values.damping))
 
 
-def _project(
-    model: ReducedModel, values: JointValues, top: float, loads: FloatArray
+def project(
+    model: ReducedModel,
+    values: JointValues,
+    top: float,
+    loads: FloatArray,
+    more: tuple[ReducedModes, FloatArray] | None = None,
 ) -> _Projected:
     """Project on modes up to a frequency [rad/s] and on responses to loads.
 
-    Strong dampers hold their joints: then also on the modes with the dampers locked,
-    and on responses with half-locked ones.
+    Strong dampers hold their joints: then also on responses at real s, or without loads
+    on the modes with the dampers locked.
+
+    Args:
+        model: of the assembly.
+        values: of its joints.
+        top: highest line [rad/s].
+        loads: columns, shape (r, n_loads).
+        more: undamped modes at these values, and further directions; None finds the
+            modes up to the line.
     """
-    stiffness, damping = values.stiffness, values.damping
-    found = _modes_up_to(model, stiffness, _REACH * top)
-    space = _with_responses(model, stiffness, found.shapes, loads)
+    stiffness = values.stiffness
+    found = more[0] if more else solve_below(model, stiffness, (_REACH * top) ** 2)
     viscous = damping_matrix(model, values)
     omega = np.sqrt(np.maximum(found.eigenvalue, model.shift))
     ratio = np.einsum("rm,rm->m", found.shapes, viscous @ found.shapes) / omega
-    if 0.5 * ratio.max(initial=0.0) > _LIGHT:
-        locked = stiffness + top * damping
-        space = _joined(space, _modes_up_to(model, locked, top).shapes)
-        for share in _LOCKED:
-            partly = stiffness + share * top * damping
-            space = _with_responses(model, partly, space, loads)
     whole = model.with_joints(stiffness)
+    if 0.5 * ratio.max(initial=0.0) <= _LIGHT:
+        space = _with_responses(whole, model.shift, found.shapes, loads)
+    elif loads.shape[1]:
+        space = _with_decays(whole, viscous, top, found.shapes, loads)
+    else:
+        locked = solve_below(model, stiffness + top * values.damping, top**2)
+        space = _joined(found.shapes, locked.shapes)
+    if more:
+        space = _joined(space, more[1])
     small = space.T @ (whole @ space) + 1j * (space.T @ (model.loss @ space))
     small[: found.rigid] = small[:, : found.rigid] = 0.0
     return _Projected(space, small, space.T @ (viscous @ space))
 
 
-def _modes_up_to(
-    model: ReducedModel, stiffness: FloatArray, top: float
-) -> ReducedModes:
-    """Return the modes up to a frequency [rad/s], at least those of the model."""
-    count = min(model.modes, model.size)
-    found = solve_reduced(model, stiffness, count)
-    while count < model.size and found.eigenvalue[-1] < top**2:
-        count = min(2 * count, model.size)
-        found = solve_reduced(model, stiffness, count)
-    return found
+def _with_decays(
+    whole: FloatArray,
+    viscous: FloatArray,
+    top: float,
+    space: FloatArray,
+    loads: FloatArray,
+) -> FloatArray:
+    """Append the responses to loads at positive real s up to twice a line [rad/s]."""
+    # One by one: together, their small differences would count as rounding.
+    for s in (top * _DECAYS).tolist():
+        new = shifted_inverse(whole + s * viscous, s**2)(loads)
+        space = _joined(space, new, _DECAY_DEPENDENT)
+    return space
 
 
 def _with_responses(
-    model: ReducedModel, stiffness: FloatArray, space: FloatArray, loads: FloatArray
+    whole: FloatArray, shift: float, space: FloatArray, loads: FloatArray
 ) -> FloatArray:
     """Append the response to loads at the shift, and the next terms of its series."""
     if not loads.shape[1]:
         return space
-    solve = shifted_inverse(model.with_joints(stiffness), model.shift)
+    solve = shifted_inverse(whole, shift)
     new = loads
     for _ in range(_TERMS):
         count = space.shape[1]
@@ -135,9 +169,11 @@ def _with_responses(
     return space
 
 
-def _joined(space: FloatArray, new: FloatArray) -> FloatArray:
+def _joined(
+    space: FloatArray, new: FloatArray, least: float = _DEPENDENT
+) -> FloatArray:
     new = new / np.maximum(np.linalg.norm(new, axis=0), 1e-300)
-    for limit in (_DEPENDENT, 0.5):
+    for limit in (least, 0.5):
         new = new - space @ (space.T @ new)
         vector, size, _ = np.linalg.svd(new, full_matrices=False)
         new = vector[:, size > limit]
@@ -159,7 +195,7 @@ def complex_modes(model: ReducedModel, values: JointValues) -> DampedModes:
         Ewins, Modal Testing (2000), sec. 2.7.
     """
     top = float(np.sqrt(solve_reduced(model, values.stiffness).eigenvalue[-1]))
-    small = _project(model, values, top, np.zeros((model.size, 0)))
+    small = project(model, values, top, np.zeros((model.size, 0)))
     count = small.damping.shape[0]
     pole, vector = np.linalg.eig(_state_matrix(small))
     size = np.abs(pole)
@@ -173,6 +209,7 @@ def complex_modes(model: ReducedModel, values: JointValues) -> DampedModes:
 
 
 def _state_matrix(small: _Projected) -> ComplexArray:
+    """Return the matrix of displacement and velocity, shape (2 m, 2 m)."""
     count = small.damping.shape[0]
     state = np.zeros((2 * count, 2 * count), complex)
     state[:count, count:] = np.eye(count)
@@ -202,7 +239,7 @@ def receptance(
     """
     top = float(np.abs(laplace).max(initial=0.0))
     loads = np.concatenate([outputs, inputs]).T
-    small = _project(model, values, top, _distinct(loads))
+    small = project(model, values, top, _distinct(loads))
     count = small.damping.shape[0]
     still = _uncoupled(small)
     moving = np.arange(still, count)
@@ -235,3 +272,86 @@ def _distinct(loads: FloatArray) -> FloatArray:
     """Return an orthonormal basis of load vectors, which often repeat."""
     vector, size, _ = np.linalg.svd(loads, full_matrices=False)
     return np.asarray(vector[:, size > _DEPENDENT * size.max(initial=0.0)])
+
+
+def frf_bound(
+    model: ReducedModel,
+    values: JointValues,
+    omega: FloatArray,
+    rows: FloatArray,
+    load: tuple[int, slice],
+) -> FloatArray:
+    """Bound the error of `receptance` between the rows of a port.
+
+    It is the change by a projection on more modes, and the bound of that one's error.
+
+    Args:
+        model: of the assembly.
+        values: of its joints.
+        omega: lines [rad/s], shape (n_lines,); the highest sets the projection.
+        rows: of the port from the coordinates of the model, shape (n_rows, r).
+        load: number of its body, and its pattern columns.
+
+    Returns:
+        [m/N], shape (n_rows, n_rows, n_lines).
+    """
+    top = float(omega.max(initial=0.0))
+    small = project(model, values, top, _distinct(rows.T), _wider(model, values, top))
+    level, turn = np.linalg.eigh(small.stiffness.real)
+    level = np.maximum(level, 0.0)
+    modal = _Projected(
+        small.space @ turn,
+        turn.T @ small.stiffness @ turn,
+        turn.T @ small.damping @ turn,
+    )
+    count = level.size
+    pole, vector = np.linalg.eig(_state_matrix(modal))
+    force = np.zeros((2 * count, rows.shape[0]), complex)
+    force[count:] = (rows @ modal.space).T
+    weight = np.linalg.solve(vector, force)
+    lines = 1.0 / (1j * omega - pole[:, None])
+    response = np.stack(
+        [vector[:count] @ (one[:, None] * lines) for one in weight.T], axis=1
+    )
+    few = replace(
+        model,
+        loss=modal.stiffness.imag,
+        residual=model.residual.restricted(modal.space),
+    )
+    solution = DampedSolution(
+        model=few,
+        values=values,
+        eigenvalue=level,
+        shapes=np.eye(count),
+        damping=modal.damping,
+        modal_damping=np.zeros(count),
+        structural=True,
+        poles=pole,
+        vectors=vector[:count],
+    )
+    laplace = np.asarray(1j * omega, complex)
+    better = np.einsum("or,ril->oil", rows @ modal.space, response)
+    apart = np.abs(receptance(model, values, laplace, rows, rows) - better)
+    return np.asarray(apart + receptance_bound(solution, load, response, omega))
+
+
+def _wider(
+    model: ReducedModel, values: JointValues, top: float
+) -> tuple[ReducedModes, FloatArray]:
+    """Return modes beyond the last line, and those with the dampers locked."""
+    limit = (_BOUND_REACH * top) ** 2
+    found = solve_reduced(model, values.stiffness, model.size)
+    kept = max(int(np.searchsorted(found.eigenvalue, limit)), found.rigid)
+    modes = ReducedModes(
+        found.eigenvalue[:kept],
+        found.natural_frequency[:kept],
+        found.shapes[:, :kept],
+        found.rigid,
+    )
+    locked = [
+        solve_below(model, values.stiffness + share * top * values.damping, limit)
+        for share in _BOUND_LOCKED
+        if values.damping.any()
+    ]
+    none = np.zeros((model.size, 0))
+    return modes, np.concatenate([none, *(one.shapes for one in locked)], axis=1)

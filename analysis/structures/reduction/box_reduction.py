@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.structures.reduction.dense_modes import shifted_inverse
@@ -153,6 +152,8 @@ def _grown(
 
 def trial_points(count: int, box: tuple[float, float]) -> list[FloatArray]:
     """Spread points evenly over the logarithm of the box; two corners first."""
+    from scipy.stats import qmc  # slow to import
+
     low, high = np.log(box[0]), np.log(box[1])
     corners = np.stack([np.zeros(count), np.ones(count)])
     if not count:

@@ -14,8 +14,11 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 
-# Relative residual of each vector; its square is the error of the eigenvalue.
-_CONVERGED = 1e-6
+# Relative residual of each vector, of modes far below the shift and of others; its
+# square is the error of the eigenvalue of the inverse.
+_CONVERGED, _CONVERGED_HIGH = 1e-6, 1e-5
+# Relative residual of modes that are part of a basis.
+_ROUGH = 3e-3
 # Vectors in one block beyond the number of modes.
 _SPARE = 4
 # From this share of all modes on, all of them are computed.
@@ -45,14 +48,67 @@ def lowest_dense_modes(
     size = matrix.shape[0]
     factor = _factor(matrix, shift)
     if size <= _SMALL or count > _MOST_OF_ALL * size:
-        inverse = cho_solve(factor, np.eye(size), check_finite=False)
-        value, vector = np.linalg.eigh(0.5 * (inverse + inverse.T))
-        value, vector = value[::-1][:count], vector[:, ::-1][:, :count]
+        value, vector = _all_of_inverse(factor, size)
+        value, vector = value[:count], vector[:, :count]
     else:
-        value, vector = _block_lanczos(factor, size, count, start)
+        if start is None:
+            start = _random_start(size, count)
+        value, vector = _block_lanczos(
+            factor, start, lambda value: _allowed(value[:count], shift)
+        )
+    return _without_shift(value, shift), vector
+
+
+def dense_modes_below(
+    matrix: FloatArray, shift: float, limit: float, start: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Find the eigenvalues below a limit, as accurately as a basis needs them.
+
+    Args:
+        matrix: symmetric positive semi-definite, shape (n, n) [1/s^2].
+        shift: added to its diagonal before the inversion [1/s^2].
+        limit: [1/s^2].
+        start: vectors near the wanted ones, shape (n, k); None for random ones.
+
+    Returns:
+        Eigenvalues, the lowest first, and orthonormal vectors as columns; the
+        eigenvalues are within 1e-5.
+    """
+    size = matrix.shape[0]
+    factor = _factor(matrix, shift)
+    least = 1.0 / (limit + shift)
+    if size <= _SMALL:
+        value, vector = _all_of_inverse(factor, size)
+        kept = int(np.count_nonzero(value > least))
+        value, vector = value[:kept], vector[:, :kept]
+    else:
+        if start is None:
+            start = _random_start(size, _SPARE)
+        value, vector = _block_lanczos(
+            factor, start, lambda value: _ROUGH * value[value > least]
+        )
+    return _without_shift(value, shift), vector
+
+
+def _without_shift(value: FloatArray, shift: float) -> FloatArray:
+    """Return eigenvalues of the matrix from those of the shifted inverse."""
     # Softer joints cannot be distinguished from rounding.
     least = np.finfo(float).eps * shift
-    return np.maximum(1.0 / value - shift, least), vector
+    return np.asarray(np.maximum(1.0 / value - shift, least))
+
+
+def _random_start(size: int, count: int) -> FloatArray:
+    block = min(count + _SPARE, size)
+    return np.random.default_rng(0).standard_normal((size, block))
+
+
+def _all_of_inverse(
+    factor: tuple[FloatArray, bool], size: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return all eigenvalues of the inverse, the largest first, and vectors."""
+    inverse = cho_solve(factor, np.eye(size), check_finite=False)
+    value, vector = np.linalg.eigh(0.5 * (inverse + inverse.T))
+    return value[::-1], vector[:, ::-1]
 
 
 def shifted_inverse(
@@ -68,8 +124,9 @@ def shifted_inverse(
 
 
 def _factor(matrix: FloatArray, shift: float) -> tuple[FloatArray, bool]:
-    shifted = matrix.copy()
-    shifted.flat[:: matrix.shape[0] + 1] += shift
+    # In the order of LAPACK, which then factors in place.
+    shifted = np.array(matrix, order="F")
+    np.einsum("ii->i", shifted)[:] += shift
     try:
         factor: tuple[FloatArray, bool] = cho_factor(
             shifted, lower=True, overwrite_a=True, check_finite=False
@@ -83,12 +140,19 @@ def _factor(matrix: FloatArray, shift: float) -> tuple[FloatArray, bool]:
 
 
 def _block_lanczos(
-    factor: tuple[FloatArray, bool], size: int, count: int, start: FloatArray | None
+    factor: tuple[FloatArray, bool],
+    start: FloatArray,
+    allowed: Callable[[FloatArray], FloatArray],
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the largest eigenvalues of the inverse, and vectors."""
-    if start is None:
-        block = min(count + _SPARE, size)
-        start = np.random.default_rng(0).standard_normal((size, block))
+    """Return the largest eigenvalues of the inverse, and vectors.
+
+    Args:
+        factor: of the matrix with its shift.
+        start: see `lowest_dense_modes`.
+        allowed: from eigenvalues, the largest first, to the residuals that are allowed
+            of those that are wanted.
+    """
+    size = factor[0].shape[0]
     new = np.linalg.qr(start)[0]
     space, images = np.zeros((size, 0)), np.zeros((size, 0))
     for step in range(size):
@@ -100,14 +164,23 @@ def _block_lanczos(
             continue
         small = space.T @ images
         value, vector = np.linalg.eigh(0.5 * (small + small.T))
-        value, vector = value[::-1][:count], vector[:, ::-1][:, :count]
+        value, vector = value[::-1], vector[:, ::-1]
+        limit = allowed(value)
+        value, vector = value[: limit.size], vector[:, : limit.size]
         better = images @ vector
         left = np.linalg.norm(better - (space @ vector) * value, axis=0)
-        if np.all(left <= _CONVERGED * value) or space.shape[1] == size:
+        if np.all(left <= limit) or space.shape[1] == size:
             break
         new = _next_block(space, image)
     # One more inversion damps what high modes leave; it stays orthonormal to rounding.
     return value, np.asarray(np.linalg.qr(better)[0])
+
+
+def _allowed(value: FloatArray, shift: float) -> FloatArray:
+    """Return the residual that leaves each eigenvalue a relative error of 1e-10."""
+    level = np.maximum(1.0 / value - shift, 0.0)
+    relative = _CONVERGED_HIGH * np.sqrt(level / shift)
+    return np.asarray(value * np.clip(relative, _CONVERGED, _CONVERGED_HIGH))
 
 
 def _next_block(space: FloatArray, image: FloatArray) -> FloatArray:

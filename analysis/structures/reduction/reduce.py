@@ -35,7 +35,9 @@ from jointbench.analysis.structures.reduction.reduced_model import (
 )
 from jointbench.analysis.structures.reduction.reduction_cache import (
     body_key,
+    cached_bodies,
     cached_component,
+    content_key,
 )
 from jointbench.analysis.structures.reduction.sparse_factor import Solver
 from jointbench.analysis.structures.reduction.structure_bodies import (
@@ -97,12 +99,21 @@ def reduce_machine(
         The assembly; `Assembled.bound` bounds its errors.
     """
     ports, joints = structure_ports(structure, order, loads)
-    bodies = [
-        _one_body(structure, where, ports[where.name], band_hz, solver, cache)
-        for where in body_ranges(structure)
-    ]
-    whole = assemble_components(bodies, joints, box=box, modes=modes)
-    return compressed(whole, (LOADS,))
+
+    def few() -> Sequence[Component]:
+        bodies = [
+            _one_body(structure, where, ports[where.name], band_hz, solver, cache)
+            for where in body_ranges(structure)
+        ]
+        whole = assemble_components(bodies, joints, box=box, modes=modes)
+        return compressed(whole, (LOADS,)).components
+
+    key = ""
+    if cache is not None:
+        key = content_key(structure, band_hz, box, modes, order, loads)
+    return assemble_components(
+        cached_bodies(cache, key, few), joints, box=box, modes=modes
+    )
 
 
 def _one_body(

@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: MIT
 """A reduced structure, solved in about a millisecond, with an error bound."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.structures.reduction.dense_modes import lowest_dense_modes
+from jointbench.analysis.structures.reduction.dense_modes import (
+    dense_modes_below,
+    lowest_dense_modes,
+)
 from jointbench.analysis.structures.reduction.full_modes import frequency_of
 from jointbench.analysis.structures.reduction.joint_spread import JointSpread
 from jointbench.analysis.structures.reduction.residual_norm import ResidualNorm
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained
+
+_Pairs = tuple[FloatArray, FloatArray]
+"""Eigenvalues, the lowest first, and vectors as columns."""
 
 # Extra modes solved, so that the last requested one has neighbours.
 _SPARE = 4
@@ -165,23 +172,58 @@ def solve_reduced(
     Returns:
         The modes; rigid ones have frequency zero, all others one above zero.
     """
+    wanted = min(count or model.modes, model.size)
+
+    def solve(matrix: FloatArray, start: FloatArray | None) -> _Pairs:
+        missing = wanted - model.size + matrix.shape[0]
+        if missing <= 0:
+            return np.zeros(0), np.zeros((matrix.shape[0], 0))
+        return lowest_dense_modes(matrix, model.shift, missing, start)
+
+    return _solved(model, stiffness, solve, wanted)
+
+
+def solve_below(
+    model: ReducedModel, stiffness: FloatArray, limit: float
+) -> ReducedModes:
+    """Find the modes below a limit, as accurately as a basis needs them.
+
+    Args:
+        model: the reduced structure.
+        stiffness: totals [N/m], shape (n_parameters,).
+        limit: of the eigenvalues [1/s^2].
+
+    Returns:
+        All rigid modes, and the others below the limit.
+    """
+
+    def solve(matrix: FloatArray, start: FloatArray | None) -> _Pairs:
+        if not matrix.size:
+            return np.zeros(0), np.zeros((0, 0))
+        return dense_modes_below(matrix, model.shift, limit, start)
+
+    return _solved(model, stiffness, solve, model.size)
+
+
+def _solved(
+    model: ReducedModel,
+    stiffness: FloatArray,
+    solve: Callable[[FloatArray, FloatArray | None], _Pairs],
+    most: int,
+) -> ReducedModes:
+    """Return rigid motions, then what `solve` finds among the others."""
     values = np.asarray(stiffness, float)
     matrix = model.with_joints(values)
     turn, rigid = _unstrained(model, values > 0)
-    wanted = min(count or model.modes, model.size)
     moved = turn.shape[0]
     matrix[:moved] = turn.T @ matrix[:moved]
     matrix[:, :moved] = matrix[:, :moved] @ turn
-    value, vector = np.zeros(wanted), np.eye(model.size, wanted)
-    if wanted > rigid:
-        value[rigid:], vector[rigid:, rigid:] = lowest_dense_modes(
-            matrix[rigid:, rigid:],
-            model.shift,
-            wanted - rigid,
-            _turned(model.guess, turn, rigid),
-        )
+    level, shapes = solve(matrix[rigid:, rigid:], _turned(model.guess, turn, rigid))
+    count = min(rigid + level.size, most)
+    value, vector = np.zeros(count), np.eye(model.size, count)
+    value[rigid:], vector[rigid:, rigid:] = level, shapes
     vector[:moved] = turn @ vector[:moved]
-    return ReducedModes(value, frequency_of(value), vector, min(rigid, wanted))
+    return ReducedModes(value, frequency_of(value), vector, min(rigid, count))
 
 
 def _unstrained(model: ReducedModel, stiff: BoolArray) -> tuple[FloatArray, int]:
@@ -232,14 +274,14 @@ def frequency_bound(
     norm = model.residual.of_modes(found.shapes, found.eigenvalue, stiffness)
     error = norm / np.sqrt(level)
     inverse = 1.0 / level
-    slack = _inverse_slack(inverse, error)
+    slack = inverse_slack(inverse, error)
     lowest = 1.0 / (inverse + slack) - model.shift
     frequency = found.natural_frequency
     bound = np.where(frequency > 0, frequency - frequency_of(lowest), 0.0)
     return frequency[:wanted], bound[:wanted]
 
 
-def _inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
+def inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
     """Return how much each eigenvalue of A^-1 M may exceed its Ritz value.
 
     Among all groups of neighbours of a mode, the one with the smallest sum of squares

@@ -3,14 +3,17 @@
 
 import hashlib
 import json
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from jointbench.acquisition.file_access.array_cache import (
+    Arrays,
+    read_arrays,
+    write_arrays,
+)
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.component import (
@@ -28,15 +31,19 @@ from jointbench.analysis.structures.reduction.residual_norm import (
 )
 
 # Incremented when the reduction changes, so that old files are not used.
-_VERSION = 4
+CACHE_VERSION = 5
+"""Of the files: part of every key."""
 _COMPONENT = ("stiffness", "loss", "damping", "basis")
 _MODEL = ("stiffness", "loss", "damping", "strains")
-Arrays = dict[str, NDArray[Any]]
 
 
 def content_key(structure: Structure, *options: object) -> str:
     """Return the SHA-256 of the matrices of a structure and of options."""
-    digest = hashlib.sha256(repr((_VERSION, structure.joints, options)).encode())
+    digest = hashlib.sha256(repr((CACHE_VERSION, structure.joints)).encode())
+    for one in options:
+        digest.update(
+            one.tobytes() if isinstance(one, np.ndarray) else repr(one).encode()
+        )
     for matrix in (
         structure.stiffness,
         structure.mass,
@@ -50,7 +57,7 @@ def content_key(structure: Structure, *options: object) -> str:
 
 def body_key(body: BodyMatrices, ports: list[BodyPort], *options: object) -> str:
     """Return the SHA-256 of a body, its ports and options of its reduction."""
-    text = (_VERSION, body.name, body.loss_factor, str(body.source), options)
+    text = (CACHE_VERSION, body.name, body.loss_factor, str(body.source), options)
     digest = hashlib.sha256(repr(text).encode())
     for matrix in (body.stiffness, body.mass, body.loss):
         if matrix is not None:
@@ -63,8 +70,31 @@ def body_key(body: BodyMatrices, ports: list[BodyPort], *options: object) -> str
 
 
 def _add(digest: Any, matrix: Sparse) -> None:
-    for part in (matrix.indptr, matrix.indices, matrix.data):
-        digest.update(np.ascontiguousarray(part).tobytes())
+    """Add a matrix by its product with a random vector, which any change changes."""
+    probe = np.random.default_rng(0).standard_normal(matrix.shape[1])
+    digest.update(repr(matrix.shape).encode())
+    digest.update(np.asarray(matrix @ probe).tobytes())
+
+
+def cached_bodies(
+    folder: Path | None, key: str, make: Callable[[], Sequence[Component]]
+) -> list[Component]:
+    """Return the reduced bodies of a key from disk, or create and store them.
+
+    Args:
+        folder: of the cache; None stores nothing.
+        key: of `content_key`.
+        make: creates the bodies if they are not stored.
+    """
+    found = read_arrays(folder, key)
+    if found is not None:
+        return [component_of(f"body{at}.", found) for at in range(int(found["count"]))]
+    bodies = make()
+    arrays: Arrays = {"count": np.array(len(bodies))}
+    for at, body in enumerate(bodies):
+        arrays |= component_arrays(f"body{at}.", body)
+    write_arrays(folder, key, arrays)
+    return list(bodies)
 
 
 def cached_component(
@@ -77,11 +107,11 @@ def cached_component(
         key: of `body_key`.
         make: creates the body if it is not stored.
     """
-    found = _read(folder, key)
+    found = read_arrays(folder, key)
     if found is not None:
-        return _component("", found)
+        return component_of("", found)
     body = make()
-    _write(folder, key, _component_arrays("", body))
+    write_arrays(folder, key, component_arrays("", body))
     return body
 
 
@@ -98,35 +128,15 @@ def cached(
     Returns:
         The reduced model.
     """
-    found = _read(folder, key)
+    found = read_arrays(folder, key)
     if found is not None:
         return _model(found)
     model = make()
-    _write(folder, key, _model_arrays(model))
+    write_arrays(folder, key, _model_arrays(model))
     return model
 
 
-def _write(folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-    if folder is None:
-        return
-    folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f"{key}.part.npz"
-    np.savez(part, allow_pickle=False, **arrays)
-    os.replace(part, folder / f"{key}.npz")  # noqa: PTH105 - replaces on Windows too
-
-
-def _read(folder: Path | None, key: str) -> Arrays | None:
-    """Return the arrays of a file; None if there is none, or it is truncated."""
-    if folder is None or not (folder / f"{key}.npz").is_file():
-        return None
-    try:
-        with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (OSError, ValueError, KeyError, EOFError):
-        return None
-
-
-def _component_arrays(start: str, body: Component) -> Arrays:
+def component_arrays(start: str, body: Component) -> Arrays:
     """Return the arrays of a body; names begin with `start`."""
     found = {start + name: getattr(body, name) for name in _COMPONENT}
     facts = {
@@ -150,7 +160,8 @@ def _component_arrays(start: str, body: Component) -> Arrays:
     return found
 
 
-def _component(start: str, arrays: Arrays) -> Component:
+def component_of(start: str, arrays: Arrays) -> Component:
+    """Return the body whose arrays have names that begin with `start`."""
     facts = json.loads(str(arrays[start + "facts"]))
     residual = None
     if facts["shift"] is not None:
@@ -193,7 +204,7 @@ def _model_arrays(model: ReducedModel) -> Arrays:
     for at, (body, place) in enumerate(
         zip(residual.components, residual.places, strict=True)
     ):
-        found |= _component_arrays(f"body{at}.", body)
+        found |= component_arrays(f"body{at}.", body)
         found[f"place{at}"] = place
     for at, joint in enumerate(residual.joints):
         found |= {
@@ -225,7 +236,7 @@ def _model(arrays: Arrays) -> ReducedModel:
     ]
     bodies, groups = range(facts["bodies"]), range(facts["groups"])
     residual = ResidualNorm(
-        tuple(_component(f"body{at}.", arrays) for at in bodies),
+        tuple(component_of(f"body{at}.", arrays) for at in bodies),
         tuple(arrays[f"place{at}"] for at in bodies),
         tuple(joints),
         arrays["turn"],

@@ -43,6 +43,25 @@ class JointMotion:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Forces:
+    """Forces on the bodies of an assembly, as columns.
+
+    Attributes:
+        stretched: K times this motion of the bodies, coordinates of the assembly, shape
+            (n, m).
+        heavy: M times this motion [.. 1/s^2], shape (n, m).
+        springs: motions, shape (n, m), and what multiplies the springs of the joints in
+            each, shape (n_parameters, m) [N/m].
+        loads: body, its pattern columns, and forces on these, shape (n_columns, m).
+    """
+
+    stretched: Motion
+    heavy: Motion
+    springs: tuple[tuple[Motion, Motion], ...]
+    loads: tuple[tuple[int, slice, Motion], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class ResidualNorm:
     """What the norm of a residual needs.
 
@@ -106,33 +125,49 @@ class ResidualNorm:
         Returns:
             Shape (m,).
         """
-        tractions = self._no_tractions(motion)
-        stretch = np.ones(len(self.components))
-        stretch[list(self.factors)] = factors
-        rest = np.zeros(motion.shape[1])
+        stretch = np.ones(motion.shape[0])
+        for number, factor in zip(self.factors, factors.tolist(), strict=True):
+            stretch[self.places[number]] = factor
+        forces = Forces(
+            stretch[:, None] * motion, inertia * motion, ((motion, ties),), ()
+        )
+        return self.of_forces(forces, stiffness)
+
+    def of_forces(self, forces: Forces, stiffness: FloatArray) -> FloatArray:
+        """Return the norm of forces, an upper bound of their dual norm.
+
+        Args:
+            forces: on all bodies.
+            stiffness: real stiffness of the joints [N/m], shape (n_parameters,).
+
+        Returns:
+            Shape (m,).
+        """
+        count = forces.heavy.shape[1]
+        tractions = self._no_tractions(forces.heavy)
+        for number, columns, load in forces.loads:
+            tractions[number][columns] += load
+        rest = np.zeros(count)
         at = 0
         for joint in self.joints:
-            count = joint.moments.shape[0]
-            own = np.s_[at : at + count]
-            moved = motion[joint.columns]
-            moments = joint.moments @ moved
-            for number, columns, sign in joint.loads:
-                one = ties[own, None, :] * moments
-                tractions[number][columns] += sign * one.reshape(-1, motion.shape[1])
-            left = np.sum(np.abs(joint.rest @ moved) ** 2, axis=1)
-            rest += _rest_bound(left, ties[own], stiffness[own], joint.compliance)
-            at += count
-        whole = np.zeros(motion.shape[1])
-        for number, (place, traction) in enumerate(
-            zip(self.places, tractions, strict=True)
-        ):
-            part = _body_square(
-                self.components[number],
-                stretch[number] * motion[place],
-                inertia * motion[place],
-                traction,
+            own = np.s_[at : at + joint.moments.shape[0]]
+            moved = sum(
+                ties[own, None, :] * motion[joint.columns]
+                for motion, ties in forces.springs
             )
-            whole += part
+            moments = (joint.moments @ moved).reshape(-1, count)
+            for number, columns, sign in joint.loads:
+                tractions[number][columns] += sign * moments
+            square = np.sum(np.abs(joint.rest @ moved) ** 2, axis=1)
+            rest += _rest_bound(square, stiffness[own], joint.compliance)
+            at += joint.moments.shape[0]
+        whole = np.zeros(count)
+        for body, place, traction in zip(
+            self.components, self.places, tractions, strict=True
+        ):
+            whole += _body_square(
+                body, forces.stretched[place], forces.heavy[place], traction
+            )
         return np.asarray(np.sqrt(whole) + rest)
 
     def _no_tractions(self, motion: Motion) -> list[Motion]:
@@ -161,7 +196,7 @@ def _body_square(
 
 
 def _rest_bound(
-    left: FloatArray, ties: Motion, stiffness: FloatArray, compliance: float
+    square: FloatArray, stiffness: FloatArray, compliance: float
 ) -> FloatArray:
     """Bound the norm of tractions outside of the patterns of one joint.
 
@@ -169,15 +204,13 @@ def _rest_bound(
     A = A0 + k J'J; or by the joint's own stiffness, direction by direction.
 
     Args:
-        left: squared relative motion outside of the patterns, shape (n_directions, m).
-        ties: [N/m], shape (n_directions, m).
+        square: squared size of these tractions [N^2], shape (n_directions, m).
         stiffness: [N/m], shape (n_directions,).
         compliance: of both sides [m/N].
 
     Returns:
         Shape (m,).
     """
-    square = np.abs(ties) ** 2 * left
     soft = compliance / (1.0 + float(stiffness.min(initial=np.inf)) * compliance)
     with np.errstate(divide="ignore", invalid="ignore"):
         own = np.where(square > 0, square / stiffness[:, None], 0.0).sum(axis=0)

@@ -23,11 +23,8 @@ from jointbench.signal.modal.mode_significance import (
     least_significance,
     significance,
 )
-from jointbench.signal.modal.refined_pole_covariance import (
-    RefinedPoles,
-    refine_poles,
-    unresolved,
-)
+from jointbench.signal.modal.pole_limits import unresolved
+from jointbench.signal.modal.refined_pole_covariance import RefinedPoles, refine_poles
 from jointbench.signal.modal.residual_search.local_fit import (
     Group,
     WholeFit,

@@ -13,7 +13,8 @@ from jointbench.signal.frf.estimators import estimate_pair
 from jointbench.signal.frf.excited_band import excited_band
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.frf.linearity import check_linearity, linearity_of_sums
-from jointbench.signal.frf.spectral_sums import PairSums, force_update, sum_hits
+from jointbench.signal.frf.pair_sums import PairSums, force_update
+from jointbench.signal.frf.spectral_sums import sum_hits
 from jointbench.signal.hits.find_hits import find_hits
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,

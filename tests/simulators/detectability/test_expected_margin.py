@@ -1,19 +1,26 @@
 """Margins against closed forms: second-order terms, other sites, scatter of hits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.simulators.detectability.base_refit import project
+from jointbench.simulators.detectability.base_refit import (
+    project,
+    refit_base,
+    try_moves,
+)
 from jointbench.simulators.detectability.expected_margin import (
     expected_margin,
     margin_scale,
 )
 from jointbench.simulators.hidden.campaign_design import draw_design
 from jointbench.simulators.hidden.campaign_response import sketch_responses
-from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
+from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE, SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 from jointbench.simulators.hidden.sample_weights import sample_weights, weigh
+from jointbench.simulators.measuring.hammer import Pulse
 
 SCATTER = 0.0019
 
@@ -94,15 +101,53 @@ def test_scatter_takes_little_of_a_delay(quiet, scattered):
     assert 0.5 * without < expected_margin(scattered, delay).rho < 1.05 * without
 
 
-def test_whitening_is_the_inverse_root_of_the_covariance(scattered):
-    """In the metric of a record's dense covariance, on three of its directions."""
+def test_whitening_is_the_inverse_root_of_the_covariance(quiet, scattered):
+    """In the metric of a record's dense covariance, on one direction of scatter."""
     view = scattered.view
     zero = np.zeros_like(view.responses)
     weights = sample_weights(view.design, view.responses, zero, zero)
     white = weigh(weights, view.responses).reshape(len(view.responses), -1)
-    plain = (weights.inverse * view.responses).reshape(white.shape)
-    square = np.sum(plain**2, axis=1)
-    # Sherman and Morrison: r^T (I + s^2 r r^T)^-1 r = r^2 / (1 + s^2 r^2).
+    noise = weigh(quiet.view.weights, view.responses).reshape(white.shape)
+    square = np.sum(noise**2, axis=1)
+    # Sherman and Morrison: r^T (N + s^2 r r^T)^-1 r = r^2 / (1 + s^2 r^2), r^2 over N.
     assert_allclose(
         np.sum(white**2, axis=1), square / (1 + SCATTER**2 * square), rtol=1e-6
     )
+
+
+def test_noise_of_the_force_is_white_after_whitening(quiet):
+    """Along the ringing of one sample of the force, of which the pulse has many."""
+    view = quiet.view
+    condition = view.design.conditions[0]
+    step = 1 / SAMPLE_RATE
+    sd = FORCE_NOISE * view.design.noise
+    start = np.floor(condition.pulse.start / step) * step
+    short = Pulse(start, step, sd * np.pi / 2, exponent=1.0)
+    design = replace(view.design, conditions=(replace(condition, pulse=short),))
+    rings = np.zeros_like(view.responses)
+    rings[0] = view.weights.inverse[0] * sketch_responses(design)[0]
+    along = rings / np.linalg.norm(rings)
+    white = weigh(view.weights, along / view.weights.inverse).reshape(rings.shape)
+    samples = int(np.ceil(max(c.pulse.width for c in view.design.conditions) / step))
+    late = [np.roll(rings, k, axis=2) for k in range(samples)]
+    forced = sum(float(np.sum(white * h)) ** 2 for h in late)
+    assert forced > 0.2
+    assert_allclose(float(np.sum(white**2)) + forced, 1.0, rtol=1e-3)
+
+
+def test_a_refitted_base_is_at_the_minimum_of_its_cost(quiet):
+    """Steps of full precision from there gain less than two percent."""
+    relaxation = HiddenEffect("maxwell", {"k": 1.5e5, "tau": 3.5e-4})
+    view = quiet.view
+    responses = sketch_responses(view.design, [relaxation])
+    fit = refit_base(view, responses)
+    rows = []
+    for unit in np.eye(6):
+        sides = [
+            try_moves(view, responses, fit.moves + sign * 1e-6 * unit, None).left
+            for sign in (1, -1)
+        ]
+        rows.append((sides[0] - sides[1]) / 2e-6)
+    step = np.linalg.lstsq(-np.stack(rows, axis=1), fit.left, rcond=None)[0]
+    better = try_moves(view, responses, fit.moves + step, None)
+    assert fit.cost < 1.02 * better.cost + 0.01

@@ -129,7 +129,7 @@ def test_a_machine_gives_tables_a_report_json_and_motion(
         rows = list(csv.reader(file))
     assert len(rows) == 202
     assert rows[0][0] == "time [s]"
-    assert len(list((tmp_path / "cache").glob("*.npz"))) == 3
+    assert len(list((tmp_path / "cache").glob("*.npz"))) == 4
     before = content["jointed"]["modes"]
     assert run(monkeypatch, *words[:6], *words[8:]) == 0
     assert json.loads(target.read_text(encoding="utf-8"))["jointed"]["modes"] == before

@@ -303,3 +303,20 @@ def test_a_line_of_the_ledger_that_was_changed_is_passed_over(tmp_path: Path) ->
     with open_ledger(path, {}) as ledger:
         assert ledger.refused == {}
     assert check_file(path).state is Seal.CORRUPTED
+
+
+def test_verify_reads_a_campaign_and_finds_a_cut_one_damaged(tmp_path: Path) -> None:
+    """A campaign carries no digest; reading it shows whether it is complete."""
+    campaign = KEPT / "frozen-0.1.0" / "campaign.h5"
+    assert (check_file(campaign).kind, check_file(campaign).state) == (
+        "campaign",
+        Seal.UNSIGNED,
+    )
+    cut = tmp_path / "cut.h5"
+    cut.write_bytes(campaign.read_bytes()[:-20_000])
+    assert check_file(cut).state == "damaged"
+    empty = tmp_path / "empty.h5"
+    empty.write_bytes(campaign.read_bytes())
+    with h5py.File(empty, "r+") as file:
+        del file["records"]
+    assert (check_file(empty).kind, check_file(empty).state) == ("campaign", "damaged")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.analysis.gap.model.stated_scatter import StatedScatter
 from jointbench.analysis.lumped.identified import identification_json
 from jointbench.analysis.lumped.identify_links import identify_links
 from jointbench.analysis.lumped.lumped_matrices import incidence
@@ -101,6 +102,38 @@ def test_identify_and_gap_take_one_and_the_same_model(tmp_path: Path) -> None:
     assert (model.ends(0), model.ends(1)) == ((-1, 0), (0, 1))
     assert incidence(model).tolist() == [[1.0, 0.0], [-1.0, 1.0]]
     assert model.first_joint == 1
+
+
+def test_the_scatter_to_expect_is_stated_with_units(tmp_path: Path) -> None:
+    """Shares and times become SI; what is not stated stays open."""
+    table = '[gap.scatter]\nchannel_gain = "0.5 %"\nforce_delay = "1 us"\n'
+    stated = nominal_parameters(read(tmp_path, PRIORS + table)).scatter
+    assert stated.channel_gain == pytest.approx(0.005)
+    assert stated.force_delay == pytest.approx(1e-6)
+    assert stated.force_gain is None
+    assert nominal_parameters(read(tmp_path, PRIORS)).scatter == StatedScatter()
+
+
+@pytest.mark.parametrize(
+    ("lines", "word"),
+    [
+        ('[gap.scatter]\nchannel_gain = "0.5"\nforce_delay = "1"\n', "unit"),
+        ('[gap.scatter]\njoint_stiffness = "0 %"\n', "greater than 0"),
+        ('[gap.scatter]\nforce_delay = "2 ms"\n', "less than 0.001"),
+        ('[gap.scatter]\nforce_gains = "1 %"\n', "'force_gain' is meant"),
+        (
+            '[gap]\nrepeatability = "1 %"\n[gap.scatter]\nforce_gain = "1 %"\n',
+            "not both",
+        ),
+    ],
+)
+def test_an_impossible_scatter_is_refused(
+    lines: str, word: str, tmp_path: Path
+) -> None:
+    """With its key and the rule."""
+    with pytest.raises(BadData, match=r"bench\.toml.*gap") as caught:
+        read(tmp_path, PRIORS + lines)
+    assert word in str(caught.value)
 
 
 def test_a_missing_prior_is_none_for_modes_and_refused_by_gap(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from jointbench.analysis.gap.intake.read_campaign import (
     read_campaign,
 )
 from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.stated_scatter import StatedScatter
 
 NOMINAL = {"m1": 8.0, "m2": 4.0, "k0": 2.4e7, "c0": 300.0, "kj": 6e7, "cj": 220.0}
 SPREAD = dict.fromkeys(NOMINAL, 0.05)
@@ -263,6 +264,30 @@ def test_a_campaign_file_that_breaks_the_format_is_refused_in_one_line(
     assert "c.h5" in message
     assert "\n" not in message
     assert "; " in message
+
+
+def test_the_scatter_to_expect_is_read(tmp_path: Path) -> None:
+    """In SI units; a key left out states nothing."""
+    text = json.dumps({"force_gain": 0.01, "force_delay": 1e-6})
+    found = read_changed(tmp_path, attribute("/", "scatter_sd", text)).scatter
+    assert found == StatedScatter(force_gain=0.01, force_delay=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("[1]", "JSON object"),
+        ("{", "JSON"),
+        ('{"force": 0.01}', "'force'.*force_gain"),
+        ('{"force_gain": "1 %"}', "without a unit"),
+        ('{"force_gain": 0}', "above 0"),
+        ('{"force_delay": 1.0}', "below 0.001"),
+    ],
+)
+def test_an_impossible_scatter_is_refused(tmp_path: Path, text: str, word: str) -> None:
+    """The message names the key and the rule."""
+    with pytest.raises((FormatError, BadData), match=word):
+        read_changed(tmp_path, attribute("/", "scatter_sd", text))
 
 
 @pytest.mark.parametrize("value", [0.0, -4.0, np.nan, np.inf])

@@ -19,6 +19,7 @@ from jointbench.analysis.gap.intake.session_campaign import (
     session_campaign,
 )
 from jointbench.analysis.gap.model.nominal import NominalParameters
+from jointbench.analysis.gap.model.stated_scatter import StatedScatter
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.lumped.lumped_model import (
     Body,
@@ -119,3 +120,18 @@ def test_several_preloads_need_a_reference() -> None:
     assert campaign.preload_reference == 4000.0
     with pytest.raises(BadData, match="preload_reference"):
         session_campaign("visit", [run("a"), run("b", preload=8e3)], nominal)
+
+
+def test_the_stated_scatter_reaches_the_directions_of_the_bench() -> None:
+    """Each direction expects its size; one stiffness is stated for every joint."""
+    stated = StatedScatter(joint_stiffness=0.002, channel_delay=1e-6)
+    campaign, _ = session_campaign(
+        "c", [run("r1"), run("r2")], replace(NOMINAL, scatter=stated)
+    )
+    directions = make_bench(campaign).noise.scatter.directions
+    expected = {d.name: d.expected for d in directions if d.expected > 0.0}
+    assert expected == {
+        "stiffness of bolts": 0.002,
+        "stiffness of slide": 0.002,
+        "channel delay": 1e-6,
+    }

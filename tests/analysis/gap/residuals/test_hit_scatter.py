@@ -1,16 +1,20 @@
 """Scatter of hits along directions: sizes, trends, outstanding hits, correlation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.hit_scatter import HitsSeen, estimate_scatter
 from jointbench.analysis.gap.residuals.noise_models import whitening_of_all
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.residuals.scatter_likelihood import compress
 from jointbench.analysis.gap.residuals.scatter_record import (
     HitScatter,
     ScatterDirection,
 )
+from jointbench.analysis.gap.residuals.scatter_sizes import SizeProblem, likeliest_sizes
 
 HITS, ROWS = 16, 600
 DIRECTIONS = (
@@ -38,13 +42,20 @@ def ways(rng: np.random.Generator) -> FloatArray:
     return found
 
 
-def estimated(values: FloatArray, seed: int = 3, *, beside: float = 0.0) -> HitScatter:
+def estimated(
+    values: FloatArray,
+    seed: int = 3,
+    *,
+    beside: float = 0.0,
+    directions: tuple[ScatterDirection, ...] = DIRECTIONS,
+) -> HitScatter:
     """Return the scatter of hits that deviate by values, (n_hits, 4).
 
     Args:
         values: of each hit along each column.
         seed: of the noise.
         beside: a residual that no direction describes, over the noise.
+        directions: with the sizes that are stated.
     """
     rng = np.random.default_rng([seed, 1])
     columns = ways(rng)
@@ -52,7 +63,7 @@ def estimated(values: FloatArray, seed: int = 3, *, beside: float = 0.0) -> HitS
     residual = residual + rng.standard_normal(residual.shape)
     residual[:, ::2] += beside
     seen = HitsSeen(np.stack([ORDER, np.tile(np.arange(4.0), 4)]), REPEATS)
-    return estimate_scatter(compress(residual, columns), DIRECTIONS, seen, HITS * ROWS)
+    return estimate_scatter(compress(residual, columns), directions, seen, HITS * ROWS)
 
 
 def drawn(seed: int) -> FloatArray:
@@ -119,6 +130,23 @@ def test_sizes_are_those_of_repeats_where_the_model_does_not_fit_either() -> Non
     assert found.size[1] == pytest.approx(1e-3, rel=0.5)
 
 
+def test_a_stated_size_counts_where_the_hits_say_little() -> None:
+    """Hits without scatter leave a size of 0; a stated 4e-5 is not contradicted."""
+    constant = np.tile([0.02, 0.001, 0.0, 0.01], (HITS, 1))
+    stated = replace(DIRECTIONS[0], expected=4e-5)
+    found = estimated(constant, directions=(stated, *DIRECTIONS[1:]))
+    assert found.size[0] == pytest.approx(4e-5, rel=0.5)
+    assert not found.size[1:].any()
+
+
+def test_hits_overrule_a_stated_size() -> None:
+    """16 hits that scatter by 1 %, with 10 % or 0.1 % stated."""
+    for expected in (0.1, 0.001):
+        stated = replace(DIRECTIONS[0], expected=expected)
+        found = estimated(drawn(1), directions=(stated, *DIRECTIONS[1:]))
+        assert found.size[0] == pytest.approx(0.01, rel=0.5)
+
+
 def test_correlation_between_hits_is_found() -> None:
     """A gain that wanders with a memory of 0.93 is not taken for independent."""
     rng = np.random.default_rng(8)
@@ -145,3 +173,62 @@ def test_whitening_of_correlated_hits_leaves_unit_noise() -> None:
         at = slice(8 * i, 8 * i + 8)
         covariance[at, at] += own.T @ own
     assert left @ covariance @ left.T == pytest.approx(np.eye(24), abs=1e-9)
+
+
+def walks(seed: int, memory: float) -> FloatArray:
+    """Return gains of successive hits with a memory, (n_hits, 4)."""
+    rng = np.random.default_rng([seed, 2])
+    steps = rng.standard_normal((HITS, 4))
+    found = steps.copy()
+    for hit in range(1, HITS):
+        found[hit] = memory * found[hit - 1] + np.sqrt(1 - memory**2) * steps[hit]
+    return found * SIZES
+
+
+def loss_by_memory(values: FloatArray, seed: int = 3) -> dict[float, float]:
+    """Return -2 log likelihood of each memory at its likeliest sizes, 0 for none."""
+    rng = np.random.default_rng([seed, 1])
+    columns = ways(rng)
+    residual = np.einsum("ik,ikr->ir", values, columns)
+    residual = residual + rng.standard_normal(residual.shape)
+    means = np.zeros((HITS, 4, 4))
+    means[:, range(4), range(4)] = 1.0
+    free, nothing = np.full(3, np.inf), np.zeros(3)
+    records, which = compress(residual, columns), np.array([0, 1, 2, 2])
+    losses = {}
+    for rho in (0.0, *RESIDUALS.correlations):
+        problem = SizeProblem(records, which, means, free, nothing, rho)
+        sizes = likeliest_sizes(problem, np.array([0.01, 0.002, 0.005]))
+        losses[rho] = problem.deviance(sizes)
+    return losses
+
+
+def test_the_longest_memory_that_the_hits_allow_is_taken() -> None:
+    """Once one is 2 units likelier than none: the largest within 4 of the best."""
+    longer = 0
+    for seed in range(4):
+        values = walks(seed, 0.6)
+        losses = loss_by_memory(values)
+        best = min(losses, key=lambda rho: losses[rho])
+        allowed = [rho for rho in losses if losses[rho] < losses[best] + 4.0]
+        significant = losses[0.0] - losses[best] > 2.0
+        assert estimated(values).rho == (max(allowed) if significant else 0.0)
+        longer += significant and max(allowed) > best
+    assert longer > 0
+
+
+def test_independent_hits_rarely_have_a_memory() -> None:
+    """The bar of 2 units is passed by chance in about one of ten campaigns."""
+    found = [estimated(drawn(seed)).rho for seed in range(40, 46)]
+    assert np.count_nonzero(found) <= 1
+
+
+def test_a_memory_wins_over_the_trends_that_imitate_it() -> None:
+    """Gains that wander for long look like trends, each of which costs likelihood.
+
+    The sizes that remain beside such trends are too small for a long memory; all
+    memories are tried from the sizes without them.
+    """
+    found = [estimated(walks(seed, 0.93)) for seed in (0, 1, 2)]
+    assert all(f.rho > 0.0 for f in found)
+    assert all(f.outstanding == () for f in found)

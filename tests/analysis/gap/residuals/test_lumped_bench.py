@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.residuals.make_bench import force_time_gate, make_bench
 from jointbench.analysis.gap.residuals.noise_models import (
     channel_sigma,
     whitening_basis,
@@ -143,3 +143,24 @@ def test_the_prediction_without_force_is_zero() -> None:
     still = replace(bench.excitation, spectrum=0 * bench.excitation.spectrum)
     y = respond(bench.campaign.model, bench.theta(np.zeros(6)), still)
     assert not np.any(y)
+
+
+def hits_with_ringing(noise: float) -> FloatArray:
+    """Return forces of hits that ring for 30 samples on both sides, and noise [N]."""
+    time = np.arange(2048) - 200.0
+    ringing = 3e-3 * np.sinc(0.9 * time) * np.exp(-np.abs(time) / 5.0)
+    pulse = np.exp(-((time / 5.0) ** 2)) + ringing
+    drawn = np.random.default_rng(1).standard_normal((8, 2048))
+    return np.outer([30, 100, 300, 1000] * 2, pulse) + noise * drawn
+
+
+@pytest.mark.parametrize(("noise", "most"), [(2e-3, 48), (0.05, 24), (3.0, 8)])
+def test_the_time_gate_of_a_noisy_force_is_narrow(noise: float, most: int) -> None:
+    """It keeps the ringing of the filter that exceeds the noise, and little noise."""
+    force = hits_with_ringing(noise)
+    (first, last), sigma = force_time_gate(force)
+    assert 200 - first <= most + 15
+    assert last - 201 <= most + 15
+    assert sigma == pytest.approx(noise, rel=0.05)
+    outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
+    assert np.mean(outside**2) < 1.05 * noise**2

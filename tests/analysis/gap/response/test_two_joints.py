@@ -106,8 +106,8 @@ def test_two_joints_agree_with_another_integrator(first: str, second: str) -> No
 
 
 def test_dry_friction_at_two_joints_agrees_with_another_integrator() -> None:
-    """A switch is followed within its step: seen 6e-5 of the peak at 8 a sample."""
-    assert apart("coulomb", "coulomb", oversampling=8, points=128)[0] < 1e-4
+    """A switch is followed within its step: seen 2e-5 of the peak at 8 a sample."""
+    assert apart("coulomb", "coulomb", oversampling=8, points=128)[0] < 4e-5
 
 
 @pytest.mark.parametrize("drift", [0.3, 1.5])
@@ -116,17 +116,27 @@ def test_a_switch_of_dry_friction_is_followed_to_its_end(drift: float) -> None:
 
     The speed starts at -0.4 and the force alone would change it by 1.
     """
-    width, slope = 0.01, 0.5
-    force, mean, first, second = follow_switch(1.0, width, -0.4, drift, 0.0, slope)
+    width, growth = 0.01, 0.2
+    force, mean, first, second = follow_switch(1.0, width, -0.4, drift, growth, 1.0)
 
     def rate(t: float, y: FloatArray) -> list[float]:
         own = float(np.tanh(y[0] / width))
         middle = t - 0.5
-        return [drift - 2 * slope * own, own, own * middle, own * middle**2]
+        return [drift + growth * middle - own, own, own * middle, own * middle**2]
 
     run = solve_ivp(rate, (0, 1), [-0.4, 0, 0, 0], rtol=1e-9, max_step=1e-3)
     expected = [np.tanh(run.y[0, -1] / width), *run.y[1:, -1]]
-    assert np.allclose([force, mean, first, second], expected, atol=1e-3)
+    assert np.allclose([force, mean, first, second], expected, atol=1e-4)
+
+
+def test_dry_friction_beside_a_spring_that_runs_away_raises_nothing() -> None:
+    """A search meets such springs: the response is not finite, and is rejected."""
+    bench = bench_of([2])
+    rub = made.term_of(bench, "coulomb", "link:ground", values_of("coulomb", "ground"))
+    soft = made.term_of(bench, "cubic_stiffness", "link:joint", [-1e19])
+    with np.errstate(all="ignore"):
+        found = bench.response(np.zeros(6), [rub, soft])
+    assert not np.isfinite(found).all()
 
 
 @pytest.mark.parametrize("name", ["iwan", "coulomb", "quadratic_damping"])

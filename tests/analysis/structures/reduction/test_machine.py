@@ -120,11 +120,12 @@ def test_strong_dampers_leave_decays(machine: Assembled) -> None:
 
 
 def test_a_cached_machine_is_the_same(column: Structure, tmp_path: Path) -> None:
-    """Bodies are read back by content; a torn file is made again."""
+    """Bodies and the whole are read back by content; a torn file is made again."""
     first = reduce_machine(column, 800.0, modes=MODES, order=1, cache=tmp_path)
-    files = sorted(tmp_path.glob("*.npz"))
-    assert len(files) == 3
-    files[0].write_bytes(b"PK torn")
+    files = sorted(tmp_path.glob("*.npz"), key=lambda one: one.stat().st_mtime_ns)
+    assert len(files) == 4
+    for torn in (files[0], files[-1]):
+        torn.write_bytes(b"PK torn")
     again = reduce_machine(column, 800.0, modes=MODES, order=1, cache=tmp_path)
     values = JointValues(np.full(6, 1e8), np.zeros(6))
     np.testing.assert_array_equal(first.modes(values, 8)[0], again.modes(values, 8)[0])

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: MIT
+"""Diagnosis of hits on bolted bodies: verdict and evidence."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.compiled import announced
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.gap.diagnosis.diagnose import closest_of, effects_of
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.diagnosis.structure_search import (
+    StructureOutcome,
+    search_structure,
+)
+from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
+from jointbench.analysis.gap.judgement.held_out import hold_out_by_steps
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Estimate,
+    Finding,
+    Gap,
+    Ranked,
+)
+from jointbench.analysis.gap.model.effect import words_of
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.structure_bench.hit_campaign import (
+    HitCampaign,
+    RejectedHit,
+)
+from jointbench.analysis.gap.structure_bench.joint_state import nominal_values
+from jointbench.analysis.gap.structure_bench.make_structure_bench import (
+    make_structure_bench,
+)
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_bench.structure_effects import (
+    STRUCTURE_CATALOGUE,
+    StructureEffect,
+)
+
+OTHER_POINTS = (
+    "hit a further point off the lines of symmetry, in the tangential direction as "
+    "well: it separates the bolts"
+)
+LOOK_CLOSER = "check the views of the gap: they show the point, torque or channel"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StructureDiagnosis:
+    """Result on bolted bodies.
+
+    Attributes:
+        found: verdict and evidence.
+        landing_mm: rms distance of the hits from their points [mm].
+        tilt_degrees: rms tilt of the hits [degrees].
+        rejected: hits left out.
+    """
+
+    found: Diagnosis
+    landing_mm: float
+    tilt_degrees: float
+    rejected: tuple[RejectedHit, ...]
+
+
+@one_thread()
+def diagnose_structure(
+    campaign: HitCampaign,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[StructureEffect, ...] = STRUCTURE_CATALOGUE,
+    policy: Policy = STANDARD,
+    progress: Progress | None = None,
+) -> StructureDiagnosis:
+    """Find and name the effect that a model of bolted bodies lacks.
+
+    Args:
+        campaign: hits with modes of the free bodies and nominal parameters.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+        policy: thresholds of the verdict.
+        progress: receives one line for each step.
+
+    Raises:
+        UsageError: `without` holds a name that no entry has.
+    """
+    report = progress or _silent
+    bench = make_structure_bench(
+        campaign, without=without, entries=entries, policy=policy
+    )
+    with announced(report):
+        found = search_structure(bench, report)
+    bench, best = found.bench, found.outcome.best
+    landing, _ = bench.landed(best.base, best.terms)
+    return StructureDiagnosis(
+        _conclude(found),
+        1e3 * float(np.sqrt(np.mean(np.sum(landing[:, 2:] ** 2, axis=1)))),
+        float(np.degrees(np.sqrt(np.mean(np.sum(landing[:, :2] ** 2, axis=1))))),
+        campaign.hits.rejected,
+    )
+
+
+def _silent(line: str) -> None:
+    """Show no progress."""
+
+
+def _conclude(found: StructureOutcome) -> Diagnosis:
+    """Derive the diagnosis from the outcome of a search."""
+    outcome, bench = found.outcome, found.bench
+    verdict = _verdict(outcome, bench)
+    shown: Sequence[Fit] = ()
+    if verdict.finding is Finding.NAMED:
+        shown = (outcome.best,)
+    elif verdict.finding is Finding.AMBIGUOUS:
+        shown = outcome.level
+    base, accepted = outcome.base, outcome.acceptance.passed
+    best, on = (outcome.best, bench) if accepted else (base, found.base_bench)
+    return Diagnosis(
+        verdict=verdict.finding,
+        effects=effects_of(outcome, bench, shown),
+        candidates=_ranked(found),
+        gap_before=_gap(found.base_bench, base),
+        gap_after=_gap(on, best),
+        prior_deviations={
+            name: (float(b), float(a))
+            for name, b, a in zip(
+                bench.base_names,
+                base.prior_deviations,
+                best.prior_deviations,
+                strict=True,
+            )
+        },
+        base=_base_estimates(bench, best),
+        noise={
+            "sigma_min": float(on.sigma.min()),
+            "sigma_max": float(on.sigma.max()),
+            "force_sigma_N": 0.0,
+            "scatter_gain": 0.0,
+            "scatter_joint": 0.0,
+        },
+        null_statistic=(
+            outcome.base_screening.largest,
+            outcome.base_screening.threshold,
+        ),
+        experiment=verdict.step,
+        reason=verdict.reason,
+        explanations=tuple(_labels(f) for f in outcome.level if accepted),
+        policy=bench.policy,
+        closest=closest_of(outcome, bench),
+    )
+
+
+def _verdict(outcome: SearchOutcome, bench: StructureBench) -> DiagnosisVerdict:
+    acceptance = outcome.acceptance
+    if not acceptance.passed:
+        reason = f"no effect of the catalogue explains the hits: {acceptance.reason}"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, LOOK_CLOSER, unexplained=True)
+    chi2 = f"chi2/dof is {1 + acceptance.excess:.3f} with a floor of {bench.floor:.2%}"
+    if not outcome.best.candidates:
+        reason = f"the base model explains the hits: {chi2} of the peak"
+        return DiagnosisVerdict(
+            Finding.NONE, reason, "none required; harder hits would show more"
+        )
+    if len(outcome.level) == 1:
+        reason = f"explains the hits: {chi2} of the peak"
+        return DiagnosisVerdict(Finding.NAMED, reason, "no rival is near")
+    names = " or ".join(words_of(f.candidates) for f in outcome.level)
+    if len(outcome.level) > bench.policy.most_rivals:
+        reason = f"too many explanations fit equally well: {names}"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, OTHER_POINTS)
+    reason = f"{names}: the difference of their scores is not significant"
+    return DiagnosisVerdict(Finding.AMBIGUOUS, reason, OTHER_POINTS)
+
+
+def _labels(fit: Fit) -> tuple[str, ...]:
+    return tuple(c.label for c in fit.candidates) or ("none",)
+
+
+def _gap(bench: StructureBench, fit: Fit) -> Gap:
+    held = hold_out_by_steps(fit, bench.blocks)
+    deviation = float(np.abs(fit.prior_deviations).max())
+    views = bench.views(fit)
+    return Gap(held.gap, held.chi2_per_dof, deviation, views, held.words)
+
+
+def _ranked(found: StructureOutcome) -> tuple[Ranked, ...]:
+    bench, outcome = found.bench, found.outcome
+    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
+    first = score(bench, rows[0])
+    return tuple(
+        Ranked(
+            _labels(f),
+            score(bench, f),
+            score(bench, f) - first,
+            f.chi2 / bench.blocks.dof,
+            float(np.abs(f.prior_deviations).max()),
+        )
+        for f in rows
+    )
+
+
+def _base_estimates(bench: StructureBench, fit: Fit) -> tuple[Estimate, ...]:
+    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
+    sd = np.sqrt(np.maximum(np.diag(fit.covariance)[: fit.n_base] * widened, 0.0))
+    campaign, layout = bench.campaign, bench.layout
+    nominal = nominal_values(campaign.bodies, campaign.nominal, layout)
+    values = nominal * np.exp(fit.base)
+    return tuple(
+        Estimate(name, float(v), float(v * s), unit)
+        for name, v, s, unit in zip(layout.names, values, sd, layout.units, strict=True)
+    )

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""From raw hits to filtered records: bad hits left out, one filter for all channels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.gap.intake.intake_settings import HITS
+from jointbench.analysis.gap.intake.raw_hits import (
+    QuietHit,
+    bad_hit,
+    band_of,
+    contact_samples,
+    mains_frequency,
+    make_filter,
+    quieted,
+)
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords, RejectedHit
+from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawHit:
+    """One record as stored.
+
+    Attributes:
+        name: of the record.
+        counts: shape (1 + n_channels, n_samples).
+        point: index of the hammer point.
+        torque: of the bolts [N m].
+        aimed: peak force of the plan [N].
+    """
+
+    name: str
+    counts: FloatArray
+    point: int
+    torque: float
+    aimed: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawHits:
+    """All records of a campaign as stored.
+
+    Attributes:
+        where: of the file, for messages.
+        sample_rate: [Hz].
+        full_scale: of the converters [V].
+        quiet: samples before the trigger.
+        volts: volts per count of each row [V], shape (1 + n_channels,).
+        units: physical unit per count of each row, shape (1 + n_channels,).
+        hits: the records.
+    """
+
+    where: str
+    sample_rate: float
+    full_scale: float
+    quiet: int
+    volts: FloatArray
+    units: FloatArray
+    hits: tuple[RawHit, ...]
+
+
+def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
+    """Leave out bad hits, cut out the contacts, and filter force and responses alike.
+
+    Args:
+        raw: records as stored.
+        bodies: whose highest mode bounds the band.
+
+    Raises:
+        BadData: fewer than two hits can be used.
+    """
+    quiet = raw.quiet - HITS.trigger_margin
+    starts = [hit.counts[:, :quiet] for hit in raw.hits]
+    mains = mains_frequency(
+        np.concatenate(starts) - np.concatenate(starts).mean(axis=1, keepdims=True),
+        raw.sample_rate,
+    )
+    good: list[tuple[RawHit, QuietHit]] = []
+    rejected = []
+    for hit in raw.hits:
+        values = quieted(hit.counts * raw.units[:, None], quiet, mains, raw.sample_rate)
+        volts = hit.counts * raw.volts[:, None]
+        reason = bad_hit(values, volts, raw.full_scale, hit.aimed)
+        if reason:
+            rejected.append(RejectedHit(hit.name, reason))
+        else:
+            good.append((hit, values))
+    if len(good) < 2:
+        raise BadData(
+            f"{raw.where} has {len(good)} hits that can be used, 2 or more are "
+            f"required; {rejected[0].reason if rejected else 'record more hits'}"
+        )
+    return _filtered(raw, bodies, good, tuple(rejected))
+
+
+def _filtered(
+    raw: RawHits,
+    bodies: JointedBodies,
+    good: list[tuple[RawHit, QuietHit]],
+    rejected: tuple[RejectedHit, ...],
+) -> HitRecords:
+    force = np.stack([h.values[0] for _, h in good])
+    found = [contact_samples(h.values[0], float(h.noise[0])) for _, h in good]
+    contacts = np.stack(found)
+    force = np.where(contacts, force, 0.0)
+    highest = HITS.band_of_table * float(bodies.omega.max()) / (2 * np.pi)
+    band = min(band_of(force, raw.sample_rate), highest)
+    decimate = make_filter(band, raw.sample_rate)
+    first = int(np.flatnonzero(contacts.any(axis=0))[0])
+    start = max(first - decimate.half, 0)
+    noise = np.stack([h.noise[1:] for _, h in good])
+    response = [decimate(h.values[1:], start) for _, h in good]
+    return HitRecords(
+        names=tuple(hit.name for hit, _ in good),
+        sample_rate=raw.sample_rate / decimate.step,
+        force=decimate(force, start),
+        response=np.stack(response),
+        noise=noise * float(np.linalg.norm(decimate.kernel)),
+        point=np.array([hit.point for hit, _ in good]),
+        torque=np.array([hit.torque for hit, _ in good]),
+        level=np.array([hit.aimed for hit, _ in good]),
+        lead=(first - start) // decimate.step,
+        band=band,
+        raw_force=force[:, start:],
+        filter=decimate,
+        rejected=rejected,
+    )

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""Modes of the free bodies of a `campaign/1` file, as rows of joints and sensors."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.basics.errors import FormatError
+from jointbench.acquisition.file_access.quoting import shown, visible
+from jointbench.analysis.gap.intake.intake_settings import HITS
+from jointbench.analysis.gap.intake.typed_hdf5 import finite_array, require_group
+from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+    HitPoint,
+    JointedBodies,
+    MassPlace,
+)
+
+BODIES = ("bottom", "top")
+_Sensor = tuple[str, int, tuple[float, ...] | None]
+"""Channel, index of its body, position [m]."""
+_Points = Mapping[str, tuple[tuple[float, float, float], str]]
+"""Direction of a hit, and the body that is hit, by point."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Table:
+    """The modal table of one body.
+
+    Attributes:
+        where: of the group, for messages.
+        group: that holds it.
+        frequency: natural frequencies [Hz], shape (n_modes,).
+        before: modes of the bodies before it.
+        modes: of all bodies.
+    """
+
+    where: str
+    group: h5py.Group
+    frequency: FloatArray
+    before: int
+    modes: int
+
+    def rows(self, group: h5py.Group, name: str, shape: tuple[int, ...]) -> FloatArray:
+        """Return rows over the modes of all bodies, shape (*shape, n_all_modes)."""
+        count = self.frequency.size
+        own = finite_array(self.where, group, name, (*shape, count))
+        rows = np.zeros((*shape, self.modes))
+        rows[..., self.before : self.before + count] = own
+        return rows
+
+    def points(self, name: str) -> FloatArray:
+        """Return the rows of bolts or feet, shape (n_points, 3, n_all_modes)."""
+        found = self.group.get(name)
+        count = found.shape[0] if getattr(found, "ndim", 0) == 3 else 0
+        if not 1 <= count <= HITS.most_joints:
+            raise FormatError(
+                f"{self.where} has {count} rows of points in {name!r}, 1 to "
+                f"{HITS.most_joints} are read; store points, directions and modes"
+            )
+        return self.rows(self.group, name, (count, 3))
+
+
+def read_bodies(
+    where: str,
+    file: h5py.File,
+    sensors: Sequence[_Sensor],
+    points: _Points,
+    rigid: BoolArray,
+) -> JointedBodies:
+    """Read the modal tables of both bodies.
+
+    Args:
+        where: of the file, for messages.
+        file: open campaign.
+        sensors: response channels in the order of the data.
+        points: hammer points.
+        rigid: directions without relative motion at the bolts, shape (3,).
+
+    Raises:
+        FormatError: a part is missing or malformed.
+        BadData: a number is not finite.
+    """
+    tables = _tables(where, file)
+    bolts = [table.points("phi_bolts") for table in tables]
+    if bolts[0].shape != bolts[1].shape:
+        raise FormatError(
+            f"{where} has {len(bolts[0])} bolts at the bottom and {len(bolts[1])} at "
+            "the top; store the same bolts for both bodies"
+        )
+    feet = tables[0].points("phi_feet")
+    rows = [
+        tables[body].rows(
+            require_group(tables[body].where, tables[body].group, "phi_channel"),
+            name,
+            (),
+        )
+        for name, body, _ in sensors
+    ]
+    hit_points = tuple(_hit_point(tables, name, *p) for name, p in points.items())
+    return JointedBodies(
+        bodies=BODIES,
+        body=np.repeat([0, 1], [t.frequency.size for t in tables]),
+        omega=2 * np.pi * np.concatenate([t.frequency for t in tables]),
+        bolts=bolts[1] - bolts[0],
+        feet=feet,
+        channels=tuple(name for name, _, _ in sensors),
+        sensors=np.array(rows),
+        points=hit_points,
+        places=(
+            *_places("bottom bolt", bolts[0]),
+            *_places("top bolt", bolts[1]),
+            *_places("foot", feet),
+            *(MassPlace(point.name, point.rows) for point in hit_points),
+            *_sensor_places(sensors, rows),
+        ),
+        rigid=(bool(rigid[0]), bool(rigid[1]), bool(rigid[2])),
+    )
+
+
+def _tables(where: str, file: h5py.File) -> tuple[_Table, ...]:
+    model = require_group(where, file, "model")
+    found = []
+    for name in BODIES:
+        place, group = f"{where} body {name}", require_group(where, model, name)
+        frequency = finite_array(place, group, "freq_hz")
+        if frequency.ndim != 1 or not 1 <= frequency.size <= HITS.most_modes:
+            raise FormatError(
+                f"{place} has 'freq_hz' of shape {frequency.shape}, 1 to "
+                f"{HITS.most_modes} frequencies are read; store one row"
+            )
+        if frequency.min() < 0:
+            raise FormatError(
+                f"{place} has a frequency of {frequency.min():g} Hz; store 0 for rigid "
+                "motions"
+            )
+        found.append((place, group, frequency))
+    total = sum(f.size for _, _, f in found)
+    first = found[0][2].size
+    return tuple(
+        _Table(*one, before, total)
+        for one, before in zip(found, (0, first), strict=True)
+    )
+
+
+def _hit_point(
+    tables: Sequence[_Table],
+    name: str,
+    direction: tuple[float, float, float],
+    body: str,
+) -> HitPoint:
+    if body not in BODIES:
+        raise FormatError(
+            f"hammer point {visible(name)} is on body {shown(body)}; write "
+            f"{' or '.join(BODIES)} into the nominal parameters"
+        )
+    table = tables[BODIES.index(body)]
+    shapes = require_group(table.where, table.group, "phi_hit")
+    rows = table.rows(shapes, name, (3,))
+    normal = np.array(direction)
+    across = np.linalg.svd(normal[None])[2][1:]
+    slopes = require_group(table.where, table.group, "phi_hit_gradient")
+    gradient = table.rows(slopes, name, (3, 3))
+    return HitPoint(
+        name, normal, across, rows, np.einsum("ad,dcn->acn", across, gradient)
+    )
+
+
+def _places(name: str, rows: FloatArray) -> list[MassPlace]:
+    return [MassPlace(f"{name} {k}", one) for k, one in enumerate(rows)]
+
+
+def _sensor_places(
+    sensors: Sequence[_Sensor], rows: Sequence[FloatArray]
+) -> list[MassPlace]:
+    """Return a place for each sensor position, with all directions measured there."""
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for k, (name, body, position) in enumerate(sensors):
+        groups.setdefault((body, position or name), []).append(k)
+    return [
+        MassPlace(sensors[own[0]][0], np.array([rows[k] for k in own]))
+        for own in groups.values()
+    ]

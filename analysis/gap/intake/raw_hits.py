@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Raw hits: quiet start, contact, bad hits, common filter and decimation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.signal
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.intake.intake_settings import HITS
+from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class QuietHit:
+    """A hit without offset and mains hum.
+
+    Attributes:
+        values: force [N] and responses, shape (1 + n_channels, n_samples).
+        noise: sd of each channel before the hit, shape (1 + n_channels,).
+    """
+
+    values: FloatArray
+    noise: FloatArray
+
+
+def mains_frequency(starts: FloatArray, sample_rate: float) -> float:
+    """Return the frequency of the mains hum [Hz], from the quiet starts of all hits.
+
+    Args:
+        starts: samples before the hits, shape (n_traces, n_samples).
+        sample_rate: [Hz].
+    """
+    scaled = starts / np.maximum(starts.std(axis=1, keepdims=True), 1e-300)
+    tried = np.arange(*HITS.mains_band, HITS.mains_step)
+    left = [
+        float(np.sum((scaled - _fitted(scaled, f, sample_rate, scaled.shape[1])) ** 2))
+        for f in tried
+    ]
+    return float(tried[int(np.argmin(left))])
+
+
+def _basis(frequency: float, sample_rate: float, count: int) -> FloatArray:
+    angle = 2 * np.pi * frequency * np.arange(count) / sample_rate
+    return np.stack([np.ones(count), np.cos(angle), np.sin(angle)])
+
+
+def _fitted(
+    starts: FloatArray, frequency: float, sample_rate: float, count: int
+) -> FloatArray:
+    """Return offset and hum of traces, continued to `count` samples."""
+    basis = _basis(frequency, sample_rate, count)
+    known = basis[:, : starts.shape[1]]
+    weights = np.linalg.lstsq(known.T, starts.T, rcond=None)[0]
+    return np.asarray(weights.T @ basis)
+
+
+def quieted(
+    values: FloatArray, quiet: int, frequency: float, sample_rate: float
+) -> QuietHit:
+    """Subtract offset and mains hum, both fitted before the hit.
+
+    Args:
+        values: shape (n_rows, n_samples).
+        quiet: samples before the hit.
+        frequency: of the mains [Hz].
+        sample_rate: [Hz].
+    """
+    left = values - _fitted(values[:, :quiet], frequency, sample_rate, values.shape[1])
+    dof = max(quiet - 3, 1)
+    return QuietHit(left, np.sqrt(np.sum(left[:, :quiet] ** 2, axis=1) / dof))
+
+
+def contact_samples(force: FloatArray, noise: float) -> BoolArray:
+    """Return the samples that belong to a contact, shape (n_samples,).
+
+    Args:
+        force: of one hit [N], shape (n_samples,).
+        noise: its sd [N].
+    """
+    limit = max(HITS.contact_noise_sd * noise, HITS.contact_share * float(force.max()))
+    strong = force > limit
+    strong[1:-1] &= strong[:-2] | strong[2:]
+    kernel = np.ones(2 * HITS.contact_padding + 1)
+    return np.asarray(np.convolve(strong, kernel, mode="same") > 0.5)
+
+
+def bad_hit(hit: QuietHit, volts: FloatArray, full_scale: float, aimed: float) -> str:
+    """Return why a hit cannot be used, or an empty text.
+
+    Args:
+        hit: without offset.
+        volts: as converted [V], shape (1 + n_channels, n_samples).
+        full_scale: of the converter [V].
+        aimed: peak force of the plan [N].
+    """
+    full = np.abs(volts) >= HITS.full_share * full_scale
+    if int(full.sum(axis=1).max()) >= HITS.full_samples:
+        return f"overload: a channel reaches the full scale of {full_scale:g} V"
+    force, noise = hit.values[0], float(hit.noise[0])
+    peak = float(force.max())
+    if peak < HITS.glancing_share * aimed or peak < HITS.peak_noise_sd * noise:
+        return f"glancing: peak of {peak:.3g} N, aimed at {aimed:g} N"
+    contacts = _contacts(force, max(HITS.second_share * peak, 8 * noise))
+    if contacts > 1:
+        return f"double: {contacts} contacts of the hammer"
+    return ""
+
+
+def _contacts(force: FloatArray, limit: float) -> int:
+    """Count the contacts of the hammer: peaks with an opening between them."""
+    peaks, _ = scipy.signal.find_peaks(
+        force, height=limit, prominence=limit, distance=HITS.contact_padding
+    )
+    return max(len(peaks), 1)
+
+
+def band_of(force: FloatArray, sample_rate: float) -> float:
+    """Return the frequency up to which hits excite the structure [Hz].
+
+    Args:
+        force: gated [N], shape (n_records, n_samples).
+        sample_rate: [Hz].
+    """
+    spectrum = np.abs(np.fft.rfft(force, axis=1))
+    level = np.median(spectrum / spectrum[:, :1], axis=0)
+    beyond = np.flatnonzero(level < HITS.band_share)
+    last = beyond[0] if beyond.size else level.size - 1
+    return float(last * sample_rate / force.shape[1])
+
+
+def make_filter(band: float, sample_rate: float) -> CommonFilter:
+    """Design the filter for a band.
+
+    Args:
+        band: highest frequency that is compared [Hz].
+        sample_rate: of the raw records [Hz].
+    """
+    step = max(int(sample_rate / (HITS.rate_over_band * band)), 1)
+    if step == 1:
+        return CommonFilter(np.ones(1), 1)
+    half_rate = sample_rate / step / 2
+    width = (half_rate - band) / (sample_rate / 2)
+    taps, beta = scipy.signal.kaiserord(HITS.stop_band, width)
+    cut = 0.5 * (band + half_rate)
+    kernel = scipy.signal.firwin(taps | 1, cut, window=("kaiser", beta), fs=sample_rate)
+    return CommonFilter(np.asarray(kernel), step)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""Base coordinates of bolted bodies: their order, names and priors."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+    DIRECTIONS,
+    JointedBodies,
+    NominalBench,
+)
+
+
+class BaseName(StrEnum):
+    """Names of coordinates that every structure has once."""
+
+    TANGENTIAL_DAMPING = "bolt damping tangential"
+    NORMAL_DAMPING = "bolt damping normal"
+    FOOT = "foot stiffness"
+    FOOT_DAMPING = "foot damping"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BaseLayout:
+    """Order of the base coordinates; each is the log of a value over its nominal one.
+
+    Attributes:
+        names: of the coordinates.
+        sd: of their priors [-], shape (n_base,).
+        units: of the values.
+        compliant: directions with a stiffness coordinate, in its order.
+        contrasts: log factors of the bolts over the bolt coordinates,
+            shape (n_bolts, n_bolts - 1).
+    """
+
+    names: tuple[str, ...]
+    sd: FloatArray
+    units: tuple[str, ...]
+    compliant: tuple[int, ...]
+    contrasts: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "sd", "contrasts")
+
+    def at(self, name: str) -> int:
+        """Return the index of a coordinate."""
+        return self.names.index(name)
+
+
+def stiffness_name(direction: int) -> str:
+    """Return the name of the stiffness coordinate of a direction."""
+    return f"bolt stiffness {DIRECTIONS[direction]}"
+
+
+def modulus_name(body: str) -> str:
+    """Return the name of the modulus coordinate of a body."""
+    return f"modulus {body}"
+
+
+def loss_name(body: str) -> str:
+    """Return the name of the damping coordinate of a body."""
+    return f"damping ratio {body}"
+
+
+def mass_name(body: str) -> str:
+    """Return the name of the mass coordinate of a body."""
+    return f"mass {body}"
+
+
+def bolt_name(number: int) -> str:
+    """Return the name of a coordinate of differences between bolts."""
+    return f"bolt contrast {number}"
+
+
+def base_layout(bodies: JointedBodies, nominal: NominalBench) -> BaseLayout:
+    """Return the base coordinates with their priors.
+
+    The scatter from bolt to bolt enters as contrasts, orthogonal to the mean: a factor
+    common to all bolts is a scale of their stiffness and damping.
+    """
+    count = bodies.bolts.shape[0]
+    compliant = tuple(d for d in range(3) if not bodies.rigid[d])
+    common = float(np.hypot(nominal.stiffness_sd, nominal.bolt_sd / np.sqrt(count)))
+    rows: list[tuple[str, float, str]] = []
+    rows += [(modulus_name(b), nominal.modulus_sd, "-") for b in bodies.bodies]
+    rows += [(mass_name(b), nominal.mass_sd, "-") for b in bodies.bodies]
+    rows += [(loss_name(b), nominal.loss[1], "-") for b in bodies.bodies]
+    rows += [(stiffness_name(d), common, "N/m") for d in compliant]
+    rows.append((BaseName.TANGENTIAL_DAMPING, nominal.damping_sd, "N s/m"))
+    rows.append((BaseName.NORMAL_DAMPING, nominal.damping_sd, "N s/m"))
+    rows.append((BaseName.FOOT, nominal.foot_sd[0], "N/m"))
+    rows.append((BaseName.FOOT_DAMPING, nominal.foot_sd[1], "N s/m"))
+    rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
+    names, sd, units = zip(*rows, strict=True)
+    return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count))
+
+
+def _contrasts(count: int) -> FloatArray:
+    """Return orthonormal contrasts (Helmert), shape (count, count - 1)."""
+    columns = np.zeros((count, count - 1))
+    for k in range(1, count):
+        columns[:k, k - 1] = 1.0
+        columns[k, k - 1] = -k
+    return np.asarray(columns / np.linalg.norm(columns, axis=0))

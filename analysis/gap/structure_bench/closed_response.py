@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: MIT
+"""Responses of bodies closed by their joints, on a damped Laplace line.
+
+With the free receptances D of the modes, rows J of the joints and compliances z of the
+joints, a unit force on rows B moves rows R by
+
+    H = R D B' - (R D J') A^-1 (J D B'),    A = J D J' + diag(z).
+
+The products over modes are one matrix product for all lines, and the system of the size
+of the joints is solved for all lines at once. The slopes come from the same closure:
+dH/dz_j = (R D J' A^-1)_j (A^-1 J D B')_j, and dH/dD_n is the product of closed rows.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.analysis.gap.structure_bench.base_layout import (
+    BaseLayout,
+    BaseName,
+    bolt_name,
+    loss_name,
+    mass_name,
+    modulus_name,
+    stiffness_name,
+)
+from jointbench.analysis.gap.structure_bench.joint_state import Attached, JointState
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL, JointedBodies
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closure:
+    """Closed responses between the sensors and force columns.
+
+    Attributes:
+        s: Laplace variable of each line [rad/s], shape (n_lines,).
+        torque: factor of the torque on stiffness and damping of the bolts [-].
+        response: displacement per force [m/N], shape (n_lines, n_rows, n_columns).
+        left: joint forces per unit of each row, shape (n_lines, n_joints, n_rows).
+        system: A of each line, shape (n_lines, n_joints, n_joints).
+        across: motion of the open joints by each column, shape
+            (n_lines, n_joints, n_columns).
+        columns: force rows in modes, shape (n_columns, n_modes).
+    """
+
+    s: ComplexArray
+    torque: float
+    response: ComplexArray
+    left: ComplexArray
+    system: ComplexArray
+    across: ComplexArray
+    columns: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClosedRows:
+    """What the slopes of a closed response need.
+
+    Attributes:
+        left: joint forces per unit of each row, shape (n_lines, n_joints, n_rows).
+        right: joint forces of each column, shape (n_lines, n_joints, n_columns).
+        rows: with the joints closed, in modes, shape (n_lines, n_rows, n_modes).
+        columns: likewise, shape (n_lines, n_modes, n_columns).
+    """
+
+    left: ComplexArray
+    right: ComplexArray
+    rows: ComplexArray
+    columns: ComplexArray
+
+
+def modal_receptances(
+    bodies: JointedBodies, state: JointState, s: ComplexArray
+) -> ComplexArray:
+    """Return the displacement of each free mode per modal force, (n_lines, n_modes)."""
+    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
+    s = s[:, None]
+    dynamic = s**2 + 2.0 * state.loss[bodies.body] * omega * s + omega**2
+    return np.asarray(1.0 / (dynamic * state.mass[bodies.body]))
+
+
+def joint_compliances(
+    bodies: JointedBodies, state: JointState, s: ComplexArray, torque: float
+) -> ComplexArray:
+    """Return the dynamic compliance of each joint freedom [m/N], (n_lines, n_joints).
+
+    Args:
+        bodies: rows of the joints.
+        state: of the model.
+        s: Laplace variable, shape (n_lines,).
+        torque: factor of the torque on stiffness and damping of the bolts [-].
+    """
+    a = state.compliance
+    one = a / (1.0 + a * state.damping * s[:, None])
+    bolts = one[:, None, :] / (state.bolt * torque)[:, None]
+    foot = 1.0 / (state.foot[0] + state.foot[1] * s)
+    feet = np.repeat(foot[:, None], bodies.feet.shape[0] * 3, axis=1)
+    return np.concatenate([bolts.reshape(s.size, -1), feet], axis=1)
+
+
+def _sums_over_modes(one: FloatArray, two: FloatArray, d: ComplexArray) -> ComplexArray:
+    """Return the sum over modes of one, d and two, shape (n_lines, n_one, n_two)."""
+    pairs = (one[:, None, :] * two[None, :, :]).reshape(-1, d.shape[1])
+    kept = np.arange(len(pairs))
+    if one is two:
+        upper = np.triu_indices(len(one))
+        kept = upper[0] * len(one) + upper[1]
+    found = np.empty((d.shape[0], len(kept)), dtype=complex)
+    found.real = d.real @ pairs[kept].T
+    found.imag = d.imag @ pairs[kept].T
+    if one is two:
+        source = np.empty((len(one), len(one)), dtype=int)
+        source[upper] = source[upper[::-1]] = np.arange(len(kept))
+        found = found[:, source.ravel()]
+    return found.reshape(d.shape[0], len(one), len(two))
+
+
+def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solve the systems of all lines."""
+    return np.asarray(np.linalg.solve(matrix, right), dtype=np.complex128)
+
+
+def close(
+    bodies: JointedBodies,
+    state: JointState,
+    s: ComplexArray,
+    columns: FloatArray,
+    torque: float = 1.0,
+) -> Closure:
+    """Close the joints between the sensors and force columns.
+
+    Args:
+        bodies: modes and rows.
+        state: of the model.
+        s: Laplace variable, shape (n_lines,).
+        columns: force rows in modes, shape (n_columns, n_modes).
+        torque: factor of the torque on stiffness and damping of the bolts [-].
+    """
+    rows, columns = _ends(bodies, state, columns)
+    joints = bodies.joint_rows
+    d = modal_receptances(bodies, state, s)
+    system = _sums_over_modes(joints, joints, d)
+    at = np.arange(len(joints))
+    system[:, at, at] += joint_compliances(bodies, state, s, torque)
+    across = _sums_over_modes(joints, columns, d)
+    left = _solved(system, _sums_over_modes(joints, rows, d))
+    response = _sums_over_modes(rows, columns, d)
+    response -= left.transpose(0, 2, 1) @ across
+    if state.attached:
+        _, force = _attached_forces(bodies, state, s, response)
+        count = force.shape[1]
+        response = response[:, :-count, :-count] - response[:, :-count, -count:] @ force
+    return Closure(s, torque, response, left, system, across, columns)
+
+
+def _ends(
+    bodies: JointedBodies, state: JointState, columns: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return rows and columns, with those of attached things at their ends."""
+    places = [bodies.places[a.place].rows for a in state.attached]
+    return (
+        np.concatenate([bodies.sensors, *places]),
+        np.concatenate([columns, *places]),
+    )
+
+
+def _attached_forces(
+    bodies: JointedBodies, state: JointState, s: ComplexArray, h: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the forces of attached masses and oscillators per row and per column.
+
+    H' = H - H_P (I + Z H_PP)^-1 Z H_P'; their rows and columns are the last ones.
+
+    Args:
+        bodies: places and rows.
+        state: with the attached things.
+        s: Laplace variable, shape (n_lines,).
+        h: response without them, shape (n_lines, n_rows, n_columns).
+    """
+    counts = [len(bodies.places[a.place].rows) for a in state.attached]
+    stiffness = [dynamic_stiffness(a, s) for a in state.attached]
+    z = np.repeat(np.stack(stiffness, axis=1), counts, axis=1)[:, :, None]
+    count = z.shape[1]
+    inner = np.eye(count) + z * h[:, -count:, -count:]
+    by_row = _solved(inner, z * h[:, :-count, -count:].transpose(0, 2, 1))
+    by_column = _solved(inner, z * h[:, -count:, :-count])
+    return by_row, by_column
+
+
+def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
+    """Return closed rows and columns, for slopes.
+
+    Args:
+        found: closed response.
+        bodies: modes and rows.
+        state: at which it was closed.
+    """
+    rows, _ = _ends(bodies, state, np.zeros((0, bodies.omega.size)))
+    columns, joints, left = found.columns, bodies.joint_rows, found.left
+    right = _solved(found.system, found.across)
+    in_rows = rows - left.transpose(0, 2, 1) @ joints
+    in_columns = (columns - right.transpose(0, 2, 1) @ joints).transpose(0, 2, 1)
+    if not state.attached:
+        return ClosedRows(left, right, in_rows, in_columns)
+    d = modal_receptances(bodies, state, found.s)
+    bare = _sums_over_modes(rows, columns, d) - left.transpose(0, 2, 1) @ found.across
+    by_row, by_column = _attached_forces(bodies, state, found.s, bare)
+    count = by_row.shape[1]
+    return ClosedRows(
+        left[:, :, :-count] - left[:, :, -count:] @ by_row,
+        right[:, :, :-count] - right[:, :, -count:] @ by_column,
+        in_rows[:, :-count] - by_row.transpose(0, 2, 1) @ in_rows[:, -count:],
+        in_columns[:, :, :-count] - in_columns[:, :, -count:] @ by_column,
+    )
+
+
+def dynamic_stiffness(attached: Attached, s: ComplexArray) -> ComplexArray:
+    """Return force per displacement of a mass or an oscillator [N/m], (n_lines,)."""
+    inertia = attached.mass * s**2
+    if attached.frequency is None:
+        return np.asarray(inertia)
+    omega = 2.0 * np.pi * attached.frequency
+    spring = 2.0 * attached.damping * omega * s + omega**2
+    return np.asarray(inertia * spring / (s**2 + spring))
+
+
+def response_slopes(
+    found: Closure,
+    bodies: JointedBodies,
+    state: JointState,
+    layout: BaseLayout,
+) -> dict[str, ComplexArray]:
+    """Return the derivative of the response by each base coordinate.
+
+    Args:
+        found: closed response.
+        bodies: modes and rows.
+        state: at which it was closed.
+        layout: base coordinates.
+
+    Returns:
+        By coordinate, shape (n_lines, n_rows, n_columns) each.
+    """
+    ends = closed_rows(found, bodies, state)
+    slopes = _modal_slopes(found, ends, bodies, state)
+    left = ends.left.transpose(0, 2, 1)
+    for name, (joints, change) in _compliance_slopes(
+        found, bodies, state, layout
+    ).items():
+        weighted = change[:, :, None] * ends.right[:, joints]
+        slopes[name] = left[:, :, joints] @ weighted
+    return slopes
+
+
+def _modal_slopes(
+    found: Closure, ends: ClosedRows, bodies: JointedBodies, state: JointState
+) -> dict[str, ComplexArray]:
+    """Return the slopes by modulus and mass of each body and by the damping ratio."""
+    root = np.sqrt(state.modulus)[bodies.body]
+    omega, s = bodies.omega * root, found.s[:, None]
+    d = modal_receptances(bodies, state, found.s)
+    square = -(d**2) * state.mass[bodies.body]
+    loss = state.loss[bodies.body]
+    by_loss = square * 2.0 * loss * omega * s
+    by_modulus = square * (loss * omega * s + omega**2)
+
+    def across(change: ComplexArray, modes: slice) -> ComplexArray:
+        rows = ends.rows[:, :, modes] * change[:, None, modes]
+        return np.asarray(rows @ ends.columns[:, modes])
+
+    slopes: dict[str, ComplexArray] = {}
+    for k, name in enumerate(bodies.bodies):
+        own = np.flatnonzero(bodies.body == k)
+        modes = slice(int(own[0]), int(own[-1]) + 1)
+        slopes[modulus_name(name)] = across(by_modulus, modes)
+        slopes[loss_name(name)] = across(by_loss, modes)
+        slopes[mass_name(name)] = across(-d, modes)
+    return slopes
+
+
+_Change = tuple[slice, ComplexArray]
+"""Joint freedoms, and the slope of their compliance, shape (n_lines, n_freedoms)."""
+
+
+def _compliance_slopes(
+    found: Closure, bodies: JointedBodies, state: JointState, layout: BaseLayout
+) -> dict[str, _Change]:
+    """Return the slope of the joint compliances by each coordinate."""
+    count, a, s = bodies.bolts.shape[0], state.compliance, found.s[:, None]
+    factor = (state.bolt * found.torque)[None, :]
+    slopes: dict[str, _Change] = {}
+    yielding = 1.0 + a * state.damping * s
+    by_stiffness = -a / yielding**2
+    by_damping = -(a**2) * state.damping * s / yielding**2
+    for direction in layout.compliant:
+        joints = slice(direction, 3 * count, 3)
+        change = by_stiffness[:, direction, None] / factor
+        slopes[stiffness_name(direction)] = joints, change
+    every = slice(0, 3 * count)
+    normal, tangential = by_damping.copy(), by_damping.copy()
+    normal[:, :NORMAL], tangential[:, NORMAL] = 0.0, 0.0
+    by_name = {
+        BaseName.TANGENTIAL_DAMPING: tangential,
+        BaseName.NORMAL_DAMPING: normal,
+    }
+    for name, one in by_name.items():
+        change = one[:, None, :] / factor[:, :, None]
+        slopes[name] = every, change.reshape(s.size, -1)
+    whole = (a / yielding)[:, None, :] / factor[:, :, None]
+    for k in range(count - 1):
+        change = -whole * layout.contrasts[:, k][None, :, None]
+        slopes[bolt_name(k + 1)] = every, change.reshape(s.size, -1)
+    feet = slice(3 * count, None)
+    stiffness, damping = state.foot
+    foot = -1.0 / (stiffness + damping * s) ** 2
+    wide = np.ones((1, 3 * bodies.feet.shape[0]))
+    slopes[BaseName.FOOT] = feet, foot * stiffness * wide
+    slopes[BaseName.FOOT_DAMPING] = feet, foot * damping * s * wide
+    return slopes

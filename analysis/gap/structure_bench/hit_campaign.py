@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Filtered hits on bolted bodies, and the hits that were left out."""
+
+from dataclasses import dataclass
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+    JointedBodies,
+    NominalBench,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RejectedHit:
+    """A record that is left out, and why."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HitRecords:
+    """Filtered hits on a bolted structure.
+
+    Force and responses have passed the same filter, so the model relates one to the
+    other without knowing it.
+
+    Attributes:
+        names: of the records.
+        sample_rate: of force and response [Hz].
+        force: [N], shape (n_records, n_samples).
+        response: accelerations [m/s^2], shape (n_records, n_channels, n_samples).
+        noise: sd of the sensor noise [m/s^2], shape (n_records, n_channels).
+        point: index of the hit point, shape (n_records,).
+        torque: of the bolts [N m], shape (n_records,).
+        level: aimed peak force [N], shape (n_records,).
+        lead: samples before the force begins.
+        band: highest frequency with force [Hz].
+        raw_force: unfiltered force [N] from the first sample on, (n_records, n_raw).
+        filter: that both have passed.
+        rejected: hits left out.
+    """
+
+    names: tuple[str, ...]
+    sample_rate: float
+    force: FloatArray
+    response: FloatArray
+    noise: FloatArray
+    point: IntArray
+    torque: FloatArray
+    level: FloatArray
+    lead: int
+    band: float
+    raw_force: FloatArray
+    filter: CommonFilter
+    rejected: tuple[RejectedHit, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "force", "response", "noise", "point", "torque", "level")
+        freeze(self, "raw_force")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HitCampaign:
+    """Hits on a bolted structure, with its model and nominal parameters.
+
+    Attributes:
+        name: of the campaign.
+        bodies: modes and rows.
+        nominal: nominal parameters.
+        hits: filtered records.
+        remarks: what a reader should know of the file, a line each.
+    """
+
+    name: str
+    bodies: JointedBodies
+    nominal: NominalBench
+    hits: HitRecords
+    remarks: tuple[str, ...] = ()

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""State of the model of bolted bodies: the values of all its parameters.
+
+Directions at the bolts are held as compliances, so that a rigid direction is exactly
+zero and an effect that makes it compliant starts from zero with a finite slope.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.analysis.gap.structure_bench.base_layout import (
+    BaseLayout,
+    BaseName,
+    loss_name,
+    mass_name,
+    modulus_name,
+    stiffness_name,
+)
+from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+    NORMAL,
+    JointedBodies,
+    NominalBench,
+)
+from jointbench.analysis.gap.structure_bench.port_laws import PortLaws
+
+
+@dataclass(frozen=True, slots=True)
+class Attached:
+    """Something attached at a place.
+
+    Attributes:
+        place: index of the place.
+        mass: [kg].
+        frequency: of the oscillator [Hz]; None for a rigid mass.
+        damping: ratio of the oscillator [-].
+    """
+
+    place: int
+    mass: float
+    frequency: float | None = None
+    damping: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointState:
+    """Values of all parameters of the model.
+
+    Attributes:
+        modulus: factor on the modulus of each body [-].
+        mass: factor on the mass of each body [-].
+        loss: damping ratio of the free modes of each body [-].
+        compliance: of a bolt along x, y, z [m/N]; 0 if rigid, shape (3,).
+        damping: of a bolt along x, y, z [N s/m], shape (3,).
+        bolt: factor on stiffness and damping of each bolt [-], shape (n_bolts,).
+        foot: stiffness [N/m] and damping [N s/m] of each foot.
+        exponent: power of stiffness and damping of the bolts in their torque [-].
+        attached: masses and oscillators.
+        gain: relative gain of each channel less 1 [-], shape (n_channels,).
+        lag: of each channel [s], shape (n_channels,).
+        laws: nonlinear laws at the bolts, or None.
+    """
+
+    modulus: FloatArray
+    mass: FloatArray
+    loss: FloatArray
+    compliance: FloatArray
+    damping: FloatArray
+    bolt: FloatArray
+    foot: tuple[float, float]
+    gain: FloatArray
+    lag: FloatArray
+    exponent: float = 0.0
+    attached: tuple[Attached, ...] = ()
+    laws: PortLaws | None = None
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "modulus", "mass", "loss", "compliance", "damping", "bolt")
+        freeze(self, "gain", "lag")
+
+
+def state_of(
+    bodies: JointedBodies, nominal: NominalBench, layout: BaseLayout, base: FloatArray
+) -> JointState:
+    """Return the state at base coordinates, without any effect."""
+    factor = dict(zip(layout.names, np.exp(base), strict=True))
+    compliance = np.zeros(3)
+    for d in layout.compliant:
+        compliance[d] = 1.0 / (nominal.stiffness[d] * factor[stiffness_name(d)])
+    across = factor[BaseName.TANGENTIAL_DAMPING]
+    along = factor[BaseName.NORMAL_DAMPING]
+    foot = factor[BaseName.FOOT], factor[BaseName.FOOT_DAMPING]
+    channels = len(bodies.channels)
+    contrast = base[layout.sd.size - layout.contrasts.shape[1] :]
+    return JointState(
+        modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
+        mass=np.array([factor[mass_name(b)] for b in bodies.bodies]),
+        loss=nominal.loss[0] * np.array([factor[loss_name(b)] for b in bodies.bodies]),
+        compliance=compliance,
+        damping=nominal.damping * np.array([across, across, along]),
+        bolt=np.exp(layout.contrasts @ contrast),
+        foot=(nominal.foot[0] * foot[0], nominal.foot[1] * foot[1]),
+        gain=np.zeros(channels),
+        lag=np.zeros(channels),
+    )
+
+
+def nominal_values(
+    bodies: JointedBodies, nominal: NominalBench, layout: BaseLayout
+) -> FloatArray:
+    """Return the value of each coordinate at 0, in its unit."""
+    known: dict[str, float] = {
+        BaseName.TANGENTIAL_DAMPING: float(nominal.damping[0]),
+        BaseName.NORMAL_DAMPING: float(nominal.damping[NORMAL]),
+        BaseName.FOOT: nominal.foot[0],
+        BaseName.FOOT_DAMPING: nominal.foot[1],
+    }
+    known |= {loss_name(b): nominal.loss[0] for b in bodies.bodies}
+    known |= {stiffness_name(d): float(nominal.stiffness[d]) for d in layout.compliant}
+    return np.array([known.get(name, 1.0) for name in layout.names])

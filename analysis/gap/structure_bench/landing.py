@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""Where and in which direction a hit met the structure, and its force columns.
+
+A hit may land beside its point and tilt. Its force on the modes is a product: direction
+of the force, times shape at the landing point. The nine columns of a hit point hold all
+products of three force directions with the shape and its two derivatives.
+"""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.structure_bench.jointed_bodies import HitPoint
+
+COLUMNS = 9
+"""Columns of a hit point."""
+PLACE_NAMES = ("tilt 1 [rad]", "tilt 2 [rad]", "aim 1 [m]", "aim 2 [m]")
+DIRECTIONS_OF_A_HIT = 5
+"""Two tilts, two offsets and the gain."""
+
+
+def point_columns(point: HitPoint) -> FloatArray:
+    """Return the force columns of a hit point in modes, shape (9, n_modes)."""
+    frame = np.concatenate([point.direction[None], point.across])
+    shapes = [point.rows, point.gradient[0], point.gradient[1]]
+    return np.concatenate([frame @ shape for shape in shapes])
+
+
+def landing_weights(landing: FloatArray) -> FloatArray:
+    """Return the weight of each column for hits, shape (n_hits, 9).
+
+    Args:
+        landing: tilts [rad] and offsets [m] of each hit, shape (n_hits, 4).
+    """
+    ones = np.ones(len(landing))
+    force = np.stack([ones, landing[:, 0], landing[:, 1]], axis=1)
+    force /= np.linalg.norm(force, axis=1, keepdims=True)
+    shape = np.stack([ones, landing[:, 2], landing[:, 3]], axis=1)
+    return (shape[:, :, None] * force[:, None, :]).reshape(-1, COLUMNS)
+
+
+def landing_slopes(landing: FloatArray) -> FloatArray:
+    """Return slopes of the weights by tilts, offsets and gain, (n_hits, 5, 9)."""
+    step = np.array([1e-6, 1e-6, 1e-9, 1e-9])
+    weights = landing_weights(landing)
+    slopes = np.empty((len(landing), DIRECTIONS_OF_A_HIT, COLUMNS))
+    for k in range(4):
+        up, down = landing.copy(), landing.copy()
+        up[:, k] += step[k]
+        down[:, k] -= step[k]
+        change = landing_weights(up) - landing_weights(down)
+        slopes[:, k] = change / (2 * step[k])
+    slopes[:, 4] = weights
+    return slopes

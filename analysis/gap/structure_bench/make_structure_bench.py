@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""Prepare a campaign on bolted bodies for the engine."""
+
+import numpy as np
+
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.structure_bench.base_layout import base_layout
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.structure_bench import (
+    StructureBench,
+    record_blocks,
+)
+from jointbench.analysis.gap.structure_bench.structure_effects import (
+    STRUCTURE_CATALOGUE,
+    StructureEffect,
+    structure_candidates,
+    without_effects,
+)
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+
+
+def make_structure_bench(
+    campaign: HitCampaign,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[StructureEffect, ...] = STRUCTURE_CATALOGUE,
+    policy: Policy = STANDARD,
+) -> StructureBench:
+    """Prepare a campaign for the engine.
+
+    Args:
+        campaign: records, model and nominal parameters.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+        policy: thresholds for its fits.
+
+    Raises:
+        UsageError: `without` holds a name that no entry has.
+    """
+    entries = without_effects(entries, without)
+    hits = campaign.hits
+    peak = np.abs(hits.response).max(axis=2)
+    return StructureBench(
+        campaign=campaign,
+        layout=base_layout(campaign.bodies, campaign.nominal),
+        entries=entries,
+        candidates=structure_candidates(entries, campaign),
+        floor=STRUCTURE.coarse_floor,
+        landing=np.zeros((len(hits.names), 4)),
+        sigma=np.hypot(hits.noise, STRUCTURE.coarse_floor * peak),
+        directions=None,
+        reach=STRUCTURE.search_reach,
+        blocks=record_blocks(campaign),
+        scales=_scales(campaign),
+        kept={},
+        policy=policy,
+    )
+
+
+def _scales(campaign: HitCampaign) -> dict[str, float]:
+    """Return the sizes that scale starts and bounds of effects."""
+    bodies, nominal, hits = campaign.bodies, campaign.nominal, campaign.hits
+    # The rigid motions of a mass-normalised table: phi = 1 / sqrt(mass) along an axis.
+    rigid = bodies.omega < 1e-3 * bodies.omega.max()
+    motion = np.sum(bodies.points[0].rows[:, rigid] ** 2, axis=1)
+    mass = 1.0 / float(np.min(motion))
+    known = nominal.stiffness[np.isfinite(nominal.stiffness)]
+    inside = (0.5 * np.pi * hits.band) ** 2 * mass / 2 / bodies.bolts.shape[0]
+    stiffness = float(np.exp(np.mean(np.log(known)))) if known.size else inside
+    force = float(np.abs(hits.raw_force).max())
+    return {
+        "one": 1.0,
+        "mass": mass,
+        "compliance": 1.0 / stiffness,
+        "travel": force / stiffness / bodies.bolts.shape[0],
+        "band": hits.band,
+        "sample time": 1.0 / hits.sample_rate,
+    }

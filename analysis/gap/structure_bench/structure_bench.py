@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: MIT
+"""The bench of bolted bodies: hits with a model of modes and joints, for the engine."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.model.diagnosis_record import View
+from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.residuals.bench_protocol import values_of
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
+from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.residual_views import slice_views
+from jointbench.analysis.gap.residuals.scatter_record import no_scatter
+from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.hit_frames import (
+    HitFrame,
+    hit_frame,
+    window_count,
+)
+from jointbench.analysis.gap.structure_bench.hit_response import (
+    HitModel,
+    hit_model,
+    law_forces,
+)
+from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
+from jointbench.analysis.gap.structure_bench.landing import (
+    landing_slopes,
+    landing_weights,
+)
+from jointbench.analysis.gap.structure_bench.structure_effects import (
+    StructureEffect,
+    structure_state,
+)
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_bench.whitening import (
+    HitWhitening,
+    directions_found,
+    whitening_of,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StructureBench:
+    """Hits on bolted bodies, as the engine uses them.
+
+    Attributes:
+        campaign: records, model and nominal parameters.
+        layout: base coordinates.
+        entries: the catalogue of this run.
+        candidates: the catalogue at every site.
+        floor: error of the model as a share of the peak of a record and channel [-].
+        landing: tilts [rad] and offsets [m] about which hits are expanded,
+            shape (n_records, 4).
+        sigma: sd of the residual [m/s^2], shape (n_records, n_channels).
+        directions: derivatives of the response by directions of unit sd, shape
+            (n_records, 5, n_channels, n_samples); None before they are computed.
+        reach: largest deviation of a base coordinate [sd].
+        blocks: records as groups.
+        scales: words to values.
+        kept: closures, transforms and whitenings that are used again.
+        policy: thresholds for fits of the bench.
+    """
+
+    campaign: HitCampaign
+    layout: BaseLayout
+    entries: tuple[StructureEffect, ...]
+    candidates: tuple[Candidate, ...]
+    floor: float
+    landing: FloatArray
+    sigma: FloatArray
+    directions: FloatArray | None
+    reach: float
+    blocks: Blocks
+    scales: dict[str, float]
+    kept: dict[Any, Any]
+    policy: Policy = STANDARD
+
+    @property
+    def base_names(self) -> tuple[str, ...]:
+        """Names of the base parameters."""
+        return self.layout.names
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """Prior standard deviation of the coordinates, shape (n_base,)."""
+        return self.layout.sd
+
+    @property
+    def base_limits(self) -> tuple[FloatArray, FloatArray]:
+        """Bounds of the base coordinates."""
+        return -self.reach * self.layout.sd, self.reach * self.layout.sd
+
+    @property
+    def probes(self) -> tuple[Candidate, ...]:
+        """No shapes beyond the catalogue."""
+        return ()
+
+    @property
+    def expanded(self) -> bool:
+        """Whether hits are expanded about where they landed."""
+        return bool(np.any(self.landing))
+
+    @property
+    def stiffness_sd(self) -> FloatArray:
+        """Empty: bolts do not settle from hit to hit."""
+        return np.zeros(0)
+
+    def at_stiffness(self, settling: FloatArray) -> "StructureBench":
+        """Return the bench unchanged."""
+        return self
+
+    @property
+    def noise(self) -> Noise:
+        """Noise of the sensors with the floor; the force counts as exact."""
+        return Noise(self.sigma, 0.0, no_scatter((), len(self.sigma)))
+
+    def views(self, fit: Fit) -> tuple[View, ...]:
+        """Return the residual of a fit by view."""
+        hits = self.campaign.hits
+        residual = fit.residual.reshape(self.blocks.shape)
+        names = self.campaign.bodies.channels
+        return slice_views(residual, self.blocks, names, hits.sample_rate)
+
+    def phases(self, candidate: Candidate) -> int:
+        """No effect fits a phase of its own."""
+        return 0
+
+    def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
+        """No effect starts from peaks of the residual."""
+        return []
+
+    def scale(self, word: str) -> float:
+        """Return the scale of a word [SI]."""
+        return self.scales[word]
+
+    def state(self, base: FloatArray, terms: Sequence[Term]) -> JointState:
+        """Return the state of the model at base coordinates with effects."""
+        bare = state_of(self.campaign.bodies, self.campaign.nominal, self.layout, base)
+        values = [values_of(self, term) for term in terms]
+        return structure_state(self.entries, self.campaign, bare, terms, values)
+
+    def frame(self, window: float | None) -> HitFrame:
+        """Return the transforms of a window."""
+        count = window_count(self.campaign.hits, window)
+        found: HitFrame = self._kept(
+            ("frame", count), lambda: hit_frame(self.campaign.hits, count)
+        )
+        return found
+
+    def response(
+        self, base: FloatArray, terms: Sequence[Term], window: float | None
+    ) -> FloatArray:
+        """Predict the responses, shape (n_records, n_channels, count)."""
+        weights = landing_weights(self.landing)
+        return self._model(base, terms, window).response(weights)
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
+    ) -> FloatArray:
+        """Return model minus measurement over sigma, whitened, shape (n_rows,)."""
+        modelled = self.response(base, terms, resolution.window)
+        count = modelled.shape[2]
+        r = modelled - self.campaign.hits.response[:, :, :count]
+        if self.directions is not None:
+            r -= self._expected(count)
+        return self._whitened(r[:, None]).ravel()
+
+    def slopes(
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
+    ) -> FloatArray:
+        """Return the slopes of the residual by the base, shape (n_rows, n_base)."""
+        weights = landing_weights(self.landing)
+        model = self._model(base, terms, resolution.window)
+        changes = self._law_slopes(model, base, terms)
+        rows = model.slopes(weights, self.layout, changes)
+        white = self._whitened(rows)
+        return white.transpose(0, 2, 1).reshape(-1, len(self.layout.names))
+
+    def refine(
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        without: Sequence[int] = (),
+    ) -> "StructureBench":
+        """Return the bench with directions and sigma at a solution.
+
+        Both come from the model, so records that are held out do not matter.
+        """
+        return self.at(base, terms, self.landing, self.floor)
+
+    def at(
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        landing: FloatArray,
+        floor: float,
+    ) -> "StructureBench":
+        """Return the bench expanded about landing points, with a floor.
+
+        Args:
+            base: coordinates at which directions and peaks are computed.
+            terms: effects there.
+            landing: tilts and offsets of each hit, shape (n_records, 4).
+            floor: error of the model, as a share of the peak [-].
+        """
+        model = self._model(base, terms, None)
+        weights = landing_slopes(landing) * self.direction_sd[:, None]
+        rows = np.stack(
+            [model.struck(weights[:, k]) for k in range(weights.shape[1])], axis=1
+        )
+        peak = np.abs(self.campaign.hits.response).max(axis=2)
+        sigma = np.hypot(self.campaign.hits.noise, floor * peak)
+        kept = {k: v for k, v in self.kept.items() if k[0] == "frame"}
+        return replace(
+            self,
+            landing=landing,
+            floor=floor,
+            sigma=sigma,
+            directions=rows,
+            kept=kept,
+        )
+
+    def landed(
+        self, base: FloatArray, terms: Sequence[Term]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the most likely tilts and offsets of each hit, and its gain.
+
+        Returns:
+            Landing, shape (n_records, 4), and relative gain, shape (n_records,).
+        """
+        modelled = self.response(base, terms, None)
+        r = modelled - self.campaign.hits.response - self._expected(modelled.shape[2])
+        scaled = self._scaled(modelled.shape[2])
+        flat = (r / self.sigma[:, :, None]).reshape(len(r), -1)
+        found = directions_found(scaled, flat) * self.direction_sd
+        return found[:, :4], found[:, 4]
+
+    @property
+    def direction_sd(self) -> FloatArray:
+        """Prior sd of two tilts [rad], two offsets [m] and the gain, shape (5,)."""
+        nominal = self.campaign.nominal
+        tilt, aim = nominal.tilt_sd, nominal.aim_sd
+        return np.array([tilt, tilt, aim, aim, STRUCTURE.gain_sd])
+
+    def chosen(self, records: IntArray) -> "StructureBench":
+        """Return the bench of some of its records."""
+        hits = self.campaign.hits
+        names = ("force", "response", "noise", "point", "torque", "level", "raw_force")
+        few = replace(
+            hits,
+            names=tuple(hits.names[k] for k in records),
+            **{name: getattr(hits, name)[records] for name in names},
+        )
+        return replace(
+            self,
+            campaign=replace(self.campaign, hits=few),
+            landing=self.landing[records],
+            sigma=self.sigma[records],
+            directions=None if self.directions is None else self.directions[records],
+            blocks=record_blocks(replace(self.campaign, hits=few)),
+            kept={},
+        )
+
+    def difference(self, base: FloatArray, terms: Sequence[Term]) -> FloatArray:
+        """Return model minus measurement, shape of the response."""
+        return self.response(base, terms, None) - self.campaign.hits.response
+
+    def _kept(self, key: tuple[object, ...], make: Callable[[], Any]) -> Any:
+        if key not in self.kept:
+            self.kept[key] = make()
+        return self.kept[key]
+
+    def _law_slopes(
+        self, model: HitModel, base: FloatArray, terms: Sequence[Term]
+    ) -> list[ComplexArray]:
+        """Return slopes of the forces of laws by the base, in short windows only.
+
+        Over whole records they would take most of the time of a fit that is then
+        close to its minimum.
+        """
+        samples = len(self.landing) * model.frame.count
+        if model.forces is None or samples > STRUCTURE.law_slope_samples:
+            return []
+        weights, step = landing_weights(self.landing), STRUCTURE.law_slope_step
+        changes = []
+        for k in range(base.size):
+            moved = base.copy()
+            moved[k] += step
+            state = self.state(moved, terms)
+            forces = law_forces(self.campaign, state, model.frame, weights)
+            changes.append((forces - model.forces) / step)
+        return changes
+
+    def _model(
+        self, base: FloatArray, terms: Sequence[Term], window: float | None
+    ) -> HitModel:
+        """Return the model at a state; the last one of a window is kept."""
+        key = (base.tobytes(), *((t.candidate, t.coordinates.tobytes()) for t in terms))
+        place = ("model", window_count(self.campaign.hits, window))
+        last = self.kept.get(place)
+        if last is not None and last[0] == key:
+            kept: HitModel = last[1]
+            return kept
+        found = hit_model(
+            self.campaign,
+            self.state(base, terms),
+            self.frame(window),
+            landing_weights(self.landing),
+        )
+        self.kept[place] = key, found
+        return found
+
+    def _scaled(self, count: int) -> FloatArray:
+        """Return directions over sigma, shape (n_records, 5, n_rows)."""
+        if self.directions is None:
+            raise ValueError("directions are computed by `at` first")
+        rows = self.directions[..., :count] / self.sigma[:, None, :, None]
+        return rows.reshape(*rows.shape[:2], -1)
+
+    def _expected(self, count: int) -> FloatArray:
+        """Return the response of the expansion that its prior mean removes."""
+        if self.directions is None:
+            raise ValueError("directions are computed by `at` first")
+        moved = np.zeros((len(self.landing), 5))
+        moved[:, :4] = self.landing / self.direction_sd[:4]
+        shown = self.directions[..., :count]
+        return np.asarray(np.einsum("rd,rdct->rct", moved, shown))
+
+    def _whitened(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""
+        count = rows.shape[3]
+        scaled = rows / self.sigma[:, None, :, None]
+        flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
+        if self.directions is None:
+            return flat
+        white: HitWhitening = self._kept(
+            ("white", count), lambda: whitening_of(self._scaled(count))
+        )
+        return white(flat)
+
+
+def record_blocks(campaign: HitCampaign) -> Blocks:
+    """Return the records of a campaign as groups of rows."""
+    hits = campaign.hits
+    shape = hits.response.shape
+    labels = tuple(
+        {
+            "level": f"{level:g} N",
+            "hit point": campaign.bodies.points[point].name,
+            "torque": f"{torque:g} N m",
+            "order": f"{k}",
+        }
+        for k, (level, point, torque) in enumerate(
+            zip(hits.level, hits.point, hits.torque, strict=True)
+        )
+    )
+    group = np.repeat(np.arange(shape[0]), shape[1] * shape[2])
+    return Blocks(group, labels, int(hits.response.size), shape, white=False)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the bench of bolted bodies and of its search."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class StructureSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    line_damping: float = numerical(
+        10.0,
+        "-",
+        "decay of the damped line over a transform: what wraps around is reduced by "
+        "exp(-10), and errors at its end grow by as much",
+        "5e-5 of the first response is below every floor",
+    )
+    padding: tuple[float, int] = numerical(
+        (0.4, 240),
+        "of the window, samples",
+        "samples of a transform beyond its window; what a band-limited response has "
+        "before the hit wraps into them",
+        "with 64 samples a window at 2 kHz was wrong by 8 % at its end, with 240 by "
+        "less than the floor",
+    )
+    integration_steps: int = numerical(
+        4,
+        "steps/sample",
+        "steps of the time integration per raw sample",
+        "within 1e-4 of the peak of an adaptive integrator (a test); 2 steps 1.3e-4, 1 "
+        "step 5e-4",
+    )
+    sliders: int = numerical(
+        24,
+        "sliders",
+        "sliders of an Iwan element at a port",
+        "a prototype on 24 campaigns",
+    )
+    law_slope_samples: int = numerical(
+        12_000,
+        "samples",
+        "samples of all records up to which slopes of the forces of laws by the base "
+        "are computed",
+        "computing time: twenty hits in a window of 60 ms",
+    )
+    law_slope_step: float = numerical(
+        1e-5, "-", "difference step of a base coordinate for them"
+    )
+    coarse_floor: float = numerical(
+        0.01,
+        "of the peak",
+        "error of the model assumed while the base is fitted from its nominal values",
+        "a prototype on 24 campaigns",
+    )
+    table_floor: float = numerical(
+        0.001,
+        "of the peak",
+        "error of the modal table, as a share of the peak of a record and channel",
+        "exact tables: above what is left of second-order aim, which is 0.03 %",
+    )
+    gain_sd: float = numerical(
+        0.001,
+        "-",
+        "sd of the gain from hit to hit, which a tilt causes in second order",
+        "1 - cos of two sd of a tilt of 1.5 degrees is 0.0014",
+    )
+    base_windows: tuple[float, float, float] = numerical(
+        (0.002, 0.006, 0.02),
+        "s",
+        "windows in which the base is fitted from its nominal values",
+        "a prototype on 24 campaigns",
+    )
+    search_reach: float = numerical(
+        4.0,
+        "sd",
+        "largest deviation of a base parameter during the search",
+        "a base that is free takes over the missing effect: deviations of 30 to 100 sd",
+    )
+    final_reach: float = numerical(
+        12.0,
+        "sd",
+        "largest deviation of a base parameter in fits that are judged",
+        "far above the limit of a verdict",
+    )
+    settling_rounds: int = numerical(
+        6, "rounds", "most rounds of a fit with where the hits landed"
+    )
+    settled_share: float = numerical(
+        0.01, "of the cost", "change of the cost below which these rounds end"
+    )
+    approach_share: float = numerical(
+        0.5, "of the cost", "the same while the fit is far from the records"
+    )
+    near_chi2: float = numerical(
+        30.0,
+        "-",
+        "chi2/dof above which hits are not expanded about where they landed",
+        "far from the records the residual is not one of landing",
+    )
+    whole_iterations: int = numerical(
+        8, "steps", "most steps of a fit to whole records in one round"
+    )
+    short_iterations: int = numerical(
+        5, "steps", "steps of a candidate in a short window", "a prototype"
+    )
+    longer_iterations: int = numerical(
+        8, "steps", "steps of a candidate in a longer window"
+    )
+    starts_kept: int = numerical(
+        2, "starts", "starts of a candidate that are fitted in a short window"
+    )
+    leaders: int = numerical(
+        4,
+        "effects",
+        "effects that are fitted by the drop of their directed tests",
+        "a prototype on 24 campaigns",
+    )
+    longer_fits: int = numerical(
+        5, "fits", "fits carried to a longer window", "a prototype on 24 campaigns"
+    )
+    whole_fits: int = numerical(
+        3, "fits", "most fits carried to whole records", "a prototype on 24 campaigns"
+    )
+    whole_cost_ratio: float = numerical(
+        3.0,
+        "of the best cost",
+        "cost in a longer window above which a fit is not carried to whole records",
+    )
+    least_direction: float = numerical(
+        1e-30,
+        "-",
+        "squared length below which a direction of a hit reaches no row",
+        "far below the rounding of a direction",
+    )
+    constraint_rank: float = numerical(
+        1e-9,
+        "of the largest",
+        "singular value below which rigid directions at bolts depend on each other",
+        "square root of rounding",
+    )
+
+
+STRUCTURE = StructureSettings()

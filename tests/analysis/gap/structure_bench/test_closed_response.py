@@ -1,0 +1,134 @@
+"""Closed responses of bolted bodies against an integrator, slopes by differences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.structure_bench.base_layout import base_layout
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.hit_frames import hit_frame
+from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model
+from jointbench.analysis.gap.structure_bench.joint_state import (
+    Attached,
+    JointState,
+    state_of,
+)
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
+from jointbench.analysis.gap.structure_bench.landing import (
+    landing_weights,
+    point_columns,
+)
+from jointbench.analysis.gap.structure_bench.port_laws import PortLaws, iwan_sliders
+
+NOMINAL = NominalBench(
+    stiffness=np.array([3e6, 4e6, 8e6]),
+    damping=np.array([60.0, 60.0, 90.0]),
+    stiffness_sd=0.1,
+    damping_sd=0.3,
+    bolt_sd=0.03,
+    foot=(4e4, 40.0),
+    foot_sd=(0.2, 0.3),
+    loss=(0.004, 0.3),
+    modulus_sd=0.02,
+    mass_sd=0.001,
+    aim_sd=1e-3,
+    tilt_sd=0.02,
+    torque_reference=40.0,
+)
+LANDING = np.array([[0.02, -0.01, 8e-4, -5e-4], [0.0, 0.0, 0.0, 0.0]])
+
+
+def campaign(rigid: tuple[bool, bool, bool] = (False, False, False)) -> HitCampaign:
+    """Return two hits on random bodies."""
+    stiffness = np.where(rigid, np.inf, NOMINAL.stiffness)
+    nominal = replace(NOMINAL, stiffness=stiffness)
+    return HitCampaign("made", random_bodies(rigid=rigid), nominal, smooth_hits())
+
+
+def state_at(made: HitCampaign, seed: int = 3) -> JointState:
+    """Return a state with all base coordinates moved."""
+    layout = base_layout(made.bodies, made.nominal)
+    base = 0.5 * layout.sd * np.random.default_rng(seed).standard_normal(layout.sd.size)
+    return state_of(made.bodies, made.nominal, layout, base)
+
+
+def model_of(made: HitCampaign, state: JointState) -> HitModel:
+    """Return the model of the hits in the whole window."""
+    frame = hit_frame(made.hits, made.hits.force.shape[1])
+    return hit_model(made, state, frame, landing_weights(LANDING))
+
+
+def judged(made: HitCampaign, state: JointState) -> FloatArray:
+    """Return the first record by the integrator."""
+    column = landing_weights(LANDING)[0] @ point_columns(made.bodies.points[0])
+    return integrated(made.bodies, state, made.hits.raw_force[0], column)
+
+
+def distance(one: FloatArray, two: FloatArray) -> float:
+    """Return the largest difference over the peak.
+
+    The last samples are left out: the filter of the integrator's record ends there.
+    """
+    apart = np.abs(one - two)[:, : -FILTER.half]
+    return float(apart.max() / np.abs(two).max())
+
+
+def test_the_linear_response_is_that_of_an_integrator() -> None:
+    """The closure on the damped line agrees with solve_ivp to 1e-4 of the peak."""
+    made = campaign()
+    state = state_at(made)
+    found = model_of(made, state).response(landing_weights(LANDING))[0]
+    assert distance(found, judged(made, state)) < 1e-4
+
+
+def test_micro_slip_at_four_bolts_is_that_of_an_integrator() -> None:
+    """Sliders at eight ports agree with solve_ivp to 1e-4 of the peak."""
+    made = campaign()
+    slips, weights = iwan_sliders(1e-6, 1.6)
+    ports = tuple(3 * k + d for k in range(4) for d in (0, 1))
+    linear = state_at(made)
+    state = replace(linear, laws=PortLaws(ports, 0.5, slips, weights))
+    weights_of_hits = landing_weights(LANDING)
+    found = model_of(made, state).response(weights_of_hits)[0]
+    stuck = model_of(made, linear).response(weights_of_hits)[0]
+    assert distance(found, stuck) > 0.02
+    assert distance(found, judged(made, state)) < 1e-4
+
+
+def test_an_added_mass_is_that_of_an_integrator() -> None:
+    """A mass at the hit point, in three directions, agrees with solve_ivp to 1e-4."""
+    made = campaign()
+    state = replace(state_at(made), attached=(Attached(0, 0.4),))
+    found = model_of(made, state).response(landing_weights(LANDING))[0]
+    assert distance(found, judged(made, state)) < 1e-4
+
+
+@pytest.mark.parametrize("attached", [(), (Attached(0, 0.4, 500.0, 0.02),)])
+@pytest.mark.parametrize("rigid", [(False, False, False), (True, True, False)])
+def test_slopes_are_those_of_differences(
+    rigid: tuple[bool, bool, bool], attached: tuple[Attached, ...]
+) -> None:
+    """Every base coordinate has the slope of a central difference."""
+    made = campaign(rigid)
+    layout = base_layout(made.bodies, made.nominal)
+    base = 0.3 * layout.sd
+    weights = landing_weights(LANDING)
+
+    def response(x: FloatArray) -> FloatArray:
+        bare = state_of(made.bodies, made.nominal, layout, x)
+        return model_of(made, replace(bare, attached=attached)).response(weights)
+
+    bare = state_of(made.bodies, made.nominal, layout, base)
+    slopes = model_of(made, replace(bare, attached=attached)).slopes(weights, layout)
+    for k, name in enumerate(layout.names):
+        step = np.zeros(layout.sd.size)
+        step[k] = 1e-5
+        difference = (response(base + step) - response(base - step)) / 2e-5
+        scale = np.abs(difference).max()
+        if name == "bolt damping tangential" and rigid[0]:
+            assert scale == 0.0
+            continue
+        assert np.abs(slopes[:, k] - difference).max() < 1e-5 * scale, name

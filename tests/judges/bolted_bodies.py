@@ -1,0 +1,146 @@
+"""Two bolted bodies integrated step by step: judge of the closed responses.
+
+The modes are random but consistent numbers: the equations do not ask where a table
+comes from. Springs, dampers and sliders act in modal coordinates, and
+`scipy.integrate.solve_ivp` integrates them with small steps.
+"""
+
+import itertools
+
+import numpy as np
+import scipy.integrate
+import scipy.interpolate
+import scipy.signal
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
+from jointbench.analysis.gap.structure_bench.joint_state import JointState
+from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+    HitPoint,
+    JointedBodies,
+    MassPlace,
+)
+
+RATE = 32_768.0
+"""Of the raw force [Hz]."""
+FILTER = CommonFilter(scipy.signal.firwin(41, 4500.0, fs=RATE), 2)
+PARTS = 2
+"""Intervals per sample, after each of which the sliders remember where they stuck."""
+BOLTS, FEET, CHANNELS, ELASTIC = 4, 4, 3, 4
+
+
+def random_bodies(
+    seed: int = 1, rigid: tuple[bool, bool, bool] = (False,) * 3
+) -> JointedBodies:
+    """Return two bodies with six rigid and four elastic modes each."""
+    rng = np.random.default_rng(seed)
+    n = 2 * (6 + ELASTIC)
+    free = np.concatenate([np.zeros(6), 2 * np.pi * rng.uniform(300, 1500, ELASTIC)])
+    body = np.repeat([0, 1], n // 2)
+    on = [np.where(body == k, 1.0, 0.0) for k in (0, 1)]
+    shapes = 0.3 * rng.standard_normal((BOLTS, 3, n))
+    hit = 0.3 * rng.standard_normal((3, n)) * on[1]
+    place = MassPlace("P1", hit)
+    point = HitPoint(
+        "P1",
+        np.array([0.0, 0.0, -1.0]),
+        np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+        hit,
+        3.0 * rng.standard_normal((2, 3, n)) * on[1],
+    )
+    return JointedBodies(
+        bodies=("bottom", "top"),
+        body=body,
+        omega=np.concatenate([free, 1.1 * free]),
+        bolts=shapes * (on[1] - on[0]),
+        feet=0.3 * rng.standard_normal((FEET, 3, n)) * on[0],
+        channels=tuple(f"A{k}" for k in range(CHANNELS)),
+        sensors=0.3 * rng.standard_normal((CHANNELS, n)),
+        points=(point,),
+        places=(place,),
+        rigid=rigid,
+    )
+
+
+def smooth_hits(count: int = 440, peak: float = 500.0) -> HitRecords:
+    """Return two hits of a smooth pulse; the responses are zero."""
+    t = np.arange(count) / RATE
+    pulse = peak * np.exp(-0.5 * ((t - 2e-3) / 2.5e-4) ** 2)
+    raw = np.stack([pulse, 0.5 * pulse])
+    force = FILTER(raw)
+    return HitRecords(
+        names=("r0", "r1"),
+        sample_rate=RATE / FILTER.step,
+        force=force,
+        response=np.zeros((2, CHANNELS, force.shape[1])),
+        noise=np.ones((2, CHANNELS)),
+        point=np.array([0, 0]),
+        torque=np.array([20.0, 80.0]),
+        level=np.array([peak, 0.5 * peak]),
+        lead=8,
+        band=3000.0,
+        raw_force=raw,
+        filter=FILTER,
+    )
+
+
+def integrated(
+    bodies: JointedBodies, state: JointState, force: FloatArray, column: FloatArray
+) -> FloatArray:
+    """Return the filtered accelerations at the sensors, (n_channels, n_samples).
+
+    Args:
+        bodies: without rigid directions.
+        state: with or without sliders and rigid masses.
+        force: raw, of one hit [N], shape (n_raw,).
+        column: of the force in modes, shape (n_modes,).
+    """
+    n = bodies.omega.size
+    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
+    mass = np.diag(state.mass[bodies.body])
+    for one in state.attached:
+        place = bodies.places[one.place].rows
+        mass += one.mass * place.T @ place
+    inverse = np.linalg.inv(mass)
+    stiff = state.mass[bodies.body] * omega**2
+    lossy = state.mass[bodies.body] * 2 * state.loss[bodies.body] * omega
+    rows = bodies.bolts.reshape(-1, n)
+    k = np.repeat(state.bolt, 3) / np.tile(state.compliance, len(state.bolt))
+    c = np.repeat(state.bolt, 3) * np.tile(state.damping, len(state.bolt))
+    feet = bodies.feet.reshape(-1, n)
+    laws = state.laws
+    ports = np.array(() if laws is None else laws.ports, dtype=int)
+    slips = np.zeros(0) if laws is None else laws.slips
+    weights = np.zeros(0) if laws is None else laws.weights
+    held = np.zeros(ports.size) if laws is None else laws.share * k[ports]
+    elastic = k.copy()
+    elastic[ports] -= held
+    times = np.arange(force.size) / RATE
+    spline = scipy.interpolate.CubicSpline(times, force)
+
+    def held_force(motion: FloatArray, memory: FloatArray) -> FloatArray:
+        stretch = np.clip(memory + motion[:, None], -slips, slips)
+        return held * (stretch @ weights)
+
+    def rates(t: float, y: FloatArray, memory: FloatArray) -> FloatArray:
+        q, v = y[:n], y[n:]
+        joint = elastic * (rows @ q) + c * (rows @ v)
+        joint[ports] += held_force(rows[ports] @ q, memory)
+        push = column * float(spline(t)) - joint @ rows
+        push -= (state.foot[0] * (feet @ q) + state.foot[1] * (feet @ v)) @ feet
+        return np.concatenate([v, inverse @ (push - stiff * q - lossy * v)])
+
+    # Sliders remember where they stuck: between two samples the motion hardly turns.
+    y, memory = np.zeros(2 * n), np.zeros((ports.size, slips.size))
+    moved = [rates(0.0, y, memory)[n:]]
+    fine = np.linspace(0.0, times[-1], PARTS * (times.size - 1) + 1)
+    for count, (start, end) in enumerate(itertools.pairwise(fine), start=1):
+        y = scipy.integrate.solve_ivp(
+            rates, (start, end), y, args=(memory,), rtol=1e-7, atol=1e-13
+        ).y[:, -1]
+        motion = (rows[ports] @ y[:n])[:, None]
+        memory = np.clip(memory + motion, -slips, slips) - motion
+        if count % PARTS == 0:
+            moved.append(rates(end, y, memory)[n:])
+    return FILTER(bodies.sensors @ np.array(moved).T)
