@@ -15,6 +15,7 @@ Source:
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.fft
 
 from jointbench.acquisition.basics.arrays import (
     ComplexArray,
@@ -22,7 +23,7 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
     freeze,
 )
-from jointbench.signal.hits.hit_spectra import SpectraPlan, windowed_force
+from jointbench.signal.hits.hit_spectra import SpectraPlan
 from jointbench.signal.hits.windows import HammerWindow
 
 # Samples below this share of the highest are no part of the pulse.
@@ -118,20 +119,21 @@ class EndOnLines:
         return np.asarray(whole / self.laplace * self.inverse)
 
 
-def record_end(plan: SpectraPlan, window: HammerWindow) -> RecordEnd | None:
+def record_end(
+    plan: SpectraPlan, window: HammerWindow, force: ComplexArray
+) -> RecordEnd | None:
     """Return where the blocks of all hits end, None where hits differ in it.
 
     Args:
         plan: of the hits.
         window: applied to each of them.
+        force: sum of their spectra [N s], shape (n_lines,).
     """
     places = {(hit.trigger - hit.start) for _, hit in plan.chosen}
     whole = all(hit.stop - hit.start >= plan.block for _, hit in plan.chosen)
     if len(places) > 1 or not whole:
         return None
-    total = np.zeros(plan.block)
-    for recording, hit in plan.chosen:
-        total += windowed_force(recording, hit, window, plan.block)
+    total = scipy.fft.irfft(force, plan.block) * plan.rate
     strong = np.flatnonzero(np.abs(total) > _NO_PULSE * np.abs(total).max())
     if strong.size == 0:
         return None
@@ -140,4 +142,4 @@ def record_end(plan: SpectraPlan, window: HammerWindow) -> RecordEnd | None:
     (place,) = places
     lead = place / plan.rate if window.lead is None else window.lead
     start = max(0, int(np.ceil(place - lead * plan.rate))) / plan.rate
-    return RecordEnd(plan.block / plan.rate, time, total[pulse], start)
+    return RecordEnd(plan.block / plan.rate, time, total[pulse].copy(), start)

@@ -199,12 +199,14 @@ def sum_hits(
     plan = plan_spectra(recordings)
     lines = _level_lines(plan, window) if levels else None
     adder = HitAdder.of(plan.frequency.size, lines)
+    total = np.zeros(plan.frequency.size, complex)
     for (recording, hit), labels in zip(plan.chosen, plan.labels, strict=True):
         force = force_spectrum(recording, hit, window, plan.block)
         responses = response_spectra(recording, hit, window, plan.block)
         adder.add(force, responses, labels, hit.point)
+        total += force
     sums = _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
-    return replace(sums, end=record_end(plan, window))
+    return replace(sums, end=record_end(plan, window, total))
 
 
 def _level_lines(plan: SpectraPlan, window: HammerWindow) -> LevelLines:

@@ -293,18 +293,11 @@ def force_spectrum(
     recording: Recording, hit: Hit, window: HammerWindow, block: int
 ) -> ComplexArray:
     """Return the spectrum of the windowed force [N s], see `windowed_hit`."""
-    force = windowed_force(recording, hit, window, block)
-    return np.asarray(scipy.fft.rfft(force, block) / recording.sample_rate)
-
-
-def windowed_force(
-    recording: Recording, hit: Hit, window: HammerWindow, block: int
-) -> FloatArray:
-    """Return the windowed force of a hit [N], at most a block long; not padded."""
     stop, weights = _weights(recording, hit, window, block)
     row = recording.row(Quantity.FORCE)
     force = recording.samples[row, hit.start : stop]
-    return np.asarray((force - force_offset(recording, hit)) * weights[0])
+    force = (force - force_offset(recording, hit)) * weights[0]
+    return np.asarray(scipy.fft.rfft(force, block) / recording.sample_rate)
 
 
 def response_spectra(
