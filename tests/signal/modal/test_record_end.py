@@ -57,6 +57,17 @@ def test_a_cut_record_gives_the_poles_and_intervals_of_its_noise() -> None:
     assert error.max() < 0.1 * other.max()
 
 
+def test_hits_with_triggers_at_different_places_are_cut_alike() -> None:
+    """A trigger a few samples late: the same FRF as where all are on time."""
+    made = struck(LEAD * 49, noise=1e-4)
+    late = [replace(h, start=h.start + n) for n, h in enumerate(made.hits)]
+    frf = estimate_frf(replace(made, hits=tuple(late)))
+    less = [replace(h, start=h.start + 2) for h in made.hits]
+    other = estimate_frf(replace(made, hits=tuple(less)))
+    assert frf.end is not None
+    np.testing.assert_array_equal(frf.response, other.response)
+
+
 def test_the_share_left_out_is_that_of_the_decay_after_the_end() -> None:
     """Against the sum over the samples that the block lacks, and its derivative."""
     end = RecordEnd(0.5, np.array([0.01, 0.0102, 0.0104]), np.array([0.5, 1.0, 0.5]))
