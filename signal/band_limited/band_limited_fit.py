@@ -13,7 +13,7 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.band_limited.band_records import (
     BandLimitedFit,
-    Estimate,
+    Interval95,
     RollOffVerdict,
 )
 from jointbench.signal.band_limited.line_sample import LineSample, line_sample
@@ -241,14 +241,14 @@ def _described(found: _Found) -> BandLimitedFit:
     )
 
 
-def _roll_off(sample: LineSample, draws: WeightedDraws, best: FloatArray) -> Estimate:
+def _roll_off(sample: LineSample, draws: WeightedDraws, best: FloatArray) -> Interval95:
     values = sample.pitch * np.exp(draws.parameters[:, 2])
     return draws.estimate(values, float(sample.pitch * np.exp(best[2])))
 
 
 def _whole_height(
     likelihood: SpectralLikelihood, draws: WeightedDraws, best: FloatArray
-) -> Estimate:
+) -> Interval95:
     """Return the root mean square of all waves [m]."""
 
     def height(parameters: FloatArray) -> float:

@@ -17,7 +17,7 @@ class RollOffVerdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class Interval95:
     """One number of a surface with its 95 % interval.
 
     Attributes:
@@ -30,9 +30,9 @@ class Estimate:
     low: float
     high: float
 
-    def times(self, factor: float) -> "Estimate":
+    def times(self, factor: float) -> "Interval95":
         """Return the estimate in another unit."""
-        return Estimate(factor * self.value, factor * self.low, factor * self.high)
+        return Interval95(factor * self.value, factor * self.low, factor * self.high)
 
     def covers(self, truth: float) -> bool:
         """Return whether the interval covers a value."""
@@ -55,9 +55,9 @@ class RoughnessMoments:
 
     shortest: float
     longest: float
-    height: Estimate
-    slope: Estimate
-    curvature: Estimate
+    height: Interval95
+    slope: Interval95
+    curvature: Interval95
     modelled: bool
 
 
@@ -87,11 +87,11 @@ class BandLimitedFit:
 
     verdict: RollOffVerdict
     reason: str
-    hurst: Estimate | None
-    roll_off: Estimate | None
+    hurst: Interval95 | None
+    roll_off: Interval95 | None
     roll_off_beyond: float | None
-    height: Estimate | None
-    short_cut: Estimate | None
+    height: Interval95 | None
+    short_cut: Interval95 | None
     noise: float
     moments: RoughnessMoments | None
     tolerance: float

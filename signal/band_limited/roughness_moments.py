@@ -5,7 +5,7 @@ import numpy as np
 from scipy.special import digamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.band_limited.band_records import Estimate, RoughnessMoments
+from jointbench.signal.band_limited.band_records import Interval95, RoughnessMoments
 from jointbench.signal.band_limited.line_sample import LineSample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
@@ -111,7 +111,7 @@ def measured_moments(sample: LineSample) -> RoughnessMoments | None:
         spread = float(np.sqrt(np.sum(terms**2 / count))) / total
         reach = np.exp(0.5 * NORMAL_97_5 * spread)
         value = np.sqrt(total)
-        parts.append(Estimate(value, float(value / reach), float(value * reach)))
+        parts.append(Interval95(value, float(value / reach), float(value * reach)))
     return _in_metres(sample, (short, long), parts, modelled=False)
 
 
@@ -145,7 +145,7 @@ def _whole_spectrum(
 def _in_metres(
     sample: LineSample,
     waves: tuple[float, float],
-    parts: list[Estimate],
+    parts: list[Interval95],
     *,
     modelled: bool,
 ) -> RoughnessMoments:

@@ -9,7 +9,7 @@ from scipy.special import ndtri
 from scipy.stats import qmc
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.band_limited.band_records import Estimate
+from jointbench.signal.band_limited.band_records import Interval95
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.band_limited.scoring_search import Maximum
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
@@ -39,7 +39,7 @@ class WeightedDraws:
     parameters: FloatArray
     weight: FloatArray
 
-    def estimate(self, values: FloatArray, best: float) -> Estimate:
+    def estimate(self, values: FloatArray, best: float) -> Interval95:
         """Return a function of the parameters with its interval.
 
         Args:
@@ -49,7 +49,7 @@ class WeightedDraws:
         order = np.argsort(values)
         share = np.cumsum(self.weight[order]) - 0.5 * self.weight[order]
         low, high = np.interp([_LOW, _HIGH], share, values[order])
-        return Estimate(best, float(min(low, best)), float(max(high, best)))
+        return Interval95(best, float(min(low, best)), float(max(high, best)))
 
 
 def draw(likelihood: SpectralLikelihood, maxima: Sequence[Maximum]) -> WeightedDraws:

@@ -15,19 +15,12 @@ from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.signal.surface.surface_treatment import SurfaceTreatment
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.pipeline.band_limited_words import (
-    COLUMNS,
-    TITLE,
-    band_json,
-    band_lines,
-    band_row,
-)
+from jointbench.station.files.structure_map_file import write_structure_map
 from jointbench.station.pipeline.pooled_surface import pooled_beside, pooled_structure
 from jointbench.station.pipeline.roughness_words import (
     HEADING,
     roughness_words,
 )
-from jointbench.station.pipeline.structure_map_file import write_structure_map
 from jointbench.station.pipeline.surface_options import (
     PLAIN,
     SurfaceOptions,
@@ -42,6 +35,13 @@ from jointbench.station.pipeline.surface_stages import (
     surface_json,
     with_band,
     with_remedy,
+)
+from jointbench.station.screen.band_limited_words import (
+    COLUMNS,
+    TITLE,
+    band_json,
+    band_lines,
+    band_row,
 )
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.value_text import engineering, with_sd

@@ -18,7 +18,6 @@ from jointbench.signal.surface.surface_treatment import (
     outside_filters,
     treated_structure,
 )
-from jointbench.station.pipeline.band_limited_words import band_json, qualified
 from jointbench.station.pipeline.roughness_words import (
     caution_lines,
     roughness_json,
@@ -31,6 +30,7 @@ from jointbench.station.pipeline.surface_options import (
     beside_the_fit,
 )
 from jointbench.station.pipeline.surface_remedies import remedy
+from jointbench.station.screen.band_limited_words import band_json, qualified
 
 
 @dataclass(frozen=True, slots=True, eq=False)

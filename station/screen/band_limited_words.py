@@ -3,7 +3,7 @@
 
 from jointbench.signal.band_limited.band_records import (
     BandLimitedFit,
-    Estimate,
+    Interval95,
     RollOffVerdict,
     RoughnessMoments,
 )
@@ -97,18 +97,18 @@ def _roll_off_words(fit: BandLimitedFit) -> str:
     return "-"
 
 
-def _metres(part: Estimate) -> str:
+def _metres(part: Interval95) -> str:
     value, low, high = (
         engineering(one, "m") for one in (part.value, part.low, part.high)
     )
     return f"{value} ({low} to {high})"
 
 
-def _plain(part: Estimate) -> str:
+def _plain(part: Interval95) -> str:
     return f"{part.value:.3g} ({part.low:.3g} to {part.high:.3g})"
 
 
-def _ends(part: Estimate | None) -> dict[str, float] | None:
+def _ends(part: Interval95 | None) -> dict[str, float] | None:
     if part is None:
         return None
     return {"value": part.value, "low": part.low, "high": part.high}
