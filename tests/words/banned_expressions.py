@@ -322,7 +322,7 @@ def _python_texts(source: str, nodes: list[ast.AST]) -> Iterator[tuple[int, str]
 
 
 def _after_hashes(source: str) -> Iterator[str]:
-    """Yield the rest of its line from every hash: all comments, and parts of strings."""
+    """Yield the rest of the line after every hash: comments, and parts of strings."""
     for line in source.split("\n"):
         for hash_sign in re.finditer("#", line):
             yield line[hash_sign.start() :]
