@@ -21,6 +21,8 @@ def level_remarks(given: RecordSet, done: LevelDiagnosis) -> tuple[str, ...]:
         f"base of the lowest level ({given.lowest[0].level}): {modes}; chi2/dof "
         f"{done.base_chi2:.3g} there"
     ]
+    if any(r.linear for r in given.lowest):
+        lines.append(_frf_remark(given))
     if not set(given.inputs) & set(given.sensors):
         lines.append(
             "no sensor is where a force acts, so that the scale of the shapes, and of "
@@ -30,3 +32,15 @@ def level_remarks(given: RecordSet, done: LevelDiagnosis) -> tuple[str, ...]:
         share = 100 * given.repeatability
         lines.append(f"{share:g} % of the peak response counts as noise, as stated")
     return tuple(lines)
+
+
+def _frf_remark(given: RecordSet) -> str:
+    """Return what the FRF of the lowest level serves for."""
+    level = given.lowest[0].level
+    if given.lowest[0] in given.fitted:
+        return (
+            f"only one level beside the FRF ({level}): laws are fitted to the FRF as "
+            "well, as if its force had been a multisine; add a level to let it serve "
+            "the base alone"
+        )
+    return f"the FRF ({level}) serves the base alone; laws are fitted to other levels"

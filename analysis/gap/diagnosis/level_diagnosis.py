@@ -211,8 +211,7 @@ def _scores(
 
 
 def _error(bench: ModalBench, fit: Fit) -> float:
-    modelled = bench.response(fit.base, fit.terms, DIAGNOSIS.scored_steps)
-    return _rms(bench, modelled - bench.data.measured)
+    return _rms(bench, bench.difference(fit.base, fit.terms, DIAGNOSIS.scored_steps))
 
 
 def _rms(bench: ModalBench, values: FloatArray) -> float:
