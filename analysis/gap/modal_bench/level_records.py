@@ -42,8 +42,8 @@ class LevelRecord:
         excitation: random, multisine or sweep; empty if not stated.
         period: of a steady state [samples], which the record ends with; None for any
             other record.
-        linear: whether an FRF stands behind the record: the response to a force that
-            was never applied, which a law would distort in another way.
+        linear: whether the record is made from an FRF: the response to a force that was
+            never applied, which a law would distort in another way.
         offset: whether the mean of the response is not in the record: a law may shift
             a structure, so that an offset is free then.
     """
