@@ -106,7 +106,7 @@ def mode_above(
     freedom = direct.left.size - direct.space.shape[0] * (direct.space.shape[2] + 1)
     noise = _noise(direct, gains[at], freedom)
 
-    def misfit(point: FloatArray) -> float:
+    def cost(point: FloatArray) -> float:
         frequency, damping = np.exp(point).tolist()
         prior = ((point[1] - np.log(ratio)) / _RATIO_SPREAD) ** 2
         return float(prior - direct.gain(frequency, damping) / noise)
@@ -114,7 +114,7 @@ def mode_above(
     ends = float(grid[max(at - 1, 0)]), float(grid[min(at + 1, grid.size - 1)])
     wide = 4.0 * _RATIO_SPREAD
     best = minimize(
-        misfit,
+        cost,
         np.array([grid[at], np.log(ratio)]),
         method="Nelder-Mead",
         bounds=[ends, (np.log(ratio) - wide, np.log(ratio) + wide)],
@@ -126,7 +126,7 @@ def mode_above(
     noise = _noise(direct, gain, freedom)
     if gain / noise < enough or frequency > _LAST * band[1]:
         return None
-    sd = _deviations(misfit, best)
+    sd = _deviations(cost, best)
     return ModeAbove(frequency, frequency * sd[0], damping, damping * sd[1])
 
 
@@ -160,20 +160,20 @@ def _prepared(
 
 
 def _deviations(
-    misfit: Callable[[FloatArray], float], best: FloatArray
+    cost: Callable[[FloatArray], float], best: FloatArray
 ) -> tuple[float, float]:
     """Return standard deviations of both logarithms from the curvature of chi2."""
-    least = misfit(best)
+    least = cost(best)
     steps = []
     for axis, step in zip(np.eye(2), _FIRST_STEPS, strict=True):
-        while step < _LAST_STEP and misfit(best + step * axis) - least < 1.0:
+        while step < _LAST_STEP and cost(best + step * axis) - least < 1.0:
             step *= 2.0
         steps.append(step * axis)
     curve = np.zeros((2, 2))
     for i, one in enumerate(steps):
         for j, other in enumerate(steps):
-            ends = misfit(best + one + other) - misfit(best + one - other)
-            ends -= misfit(best - one + other) - misfit(best - one - other)
+            ends = cost(best + one + other) - cost(best + one - other)
+            ends -= cost(best - one + other) - cost(best - one - other)
             curve[i, j] = ends / 4.0
     value, vector = np.linalg.eigh(curve)
     # In steps: a direction without curvature is open by many of them.
