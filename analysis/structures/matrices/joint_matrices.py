@@ -132,8 +132,8 @@ def _no_single_plane(joint: Joint, count: int) -> str:
             "name the face of the first body, for example face = 'z+'"
         )
     return (
-        f"joint {joint.name!r} touches nothing: no surfaces of {joint.between[0]!r} and "
-        f"{joint.between[1]!r} share an area where its patches are; check positions, "
+        f"joint {joint.name!r} touches nothing: no surfaces of {joint.between[0]!r} "
+        f"and {joint.between[1]!r} share an area where its patches are; check positions, "
         "units and patches"
     )
 

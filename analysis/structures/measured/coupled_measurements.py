@@ -146,13 +146,14 @@ def coupled_modes(
             "widen the band of the measurement"
         )
     fuller = [one for _, one in fits]
-    other = poles_near(gap(fuller), poles)
+    other = poles_near(gap(fuller), poles.tolist())
+    places = other.tolist()
     random = np.random.default_rng(seed)
     # A further power moves the poles by the error of the description, or by its own
     # noise; the noise of the fuller fit is that of a description without error.
     drawn = np.array(
         [
-            _numbers(poles_near(gap([one.drawn(random) for one in fuller]), other))
+            _numbers(poles_near(gap([one.drawn(random) for one in fuller]), places))
             for _ in range(draws)
         ]
     )
@@ -235,6 +236,6 @@ def _starts(
         np.array([one.damping for one in links], float),
     )
     pole = whole.complex_modes(values).pole
-    size = np.abs(pole) / (2.0 * np.pi)
-    near = (size > band[0] / _AROUND) & (size < band[1] * _AROUND)
+    level = np.abs(pole) / (2.0 * np.pi)
+    near = (level > band[0] / _AROUND) & (level < band[1] * _AROUND)
     return [complex(one) for one in pole[near & (pole.imag > 0.0)]]

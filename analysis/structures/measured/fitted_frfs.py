@@ -96,7 +96,7 @@ class FittedFrfs:
     @property
     def powers(self) -> int:
         """Highest power of s that describes the modes above the band."""
-        return self.terms.shape[0] - self.frequency.size - 2
+        return int(self.terms.shape[0]) - int(self.frequency.size) - 2
 
     @property
     def terms_sd(self) -> FloatArray:

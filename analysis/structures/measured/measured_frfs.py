@@ -69,7 +69,7 @@ def fit_twice(
     keep = (block.frequency >= band[0]) & (block.frequency <= band[1])
     poles = _with_mode_above(block, band, _poles(block, band))
     fixed = poles[0].size + 2
-    room = np.count_nonzero(keep) // _LINES_EACH - fixed
+    room = int(np.count_nonzero(keep)) // _LINES_EACH - fixed
     if room < _POWERS + _FURTHER:
         raise BadData(
             f"{np.count_nonzero(keep)} lines of {block.name!r} from {band[0]:g} to "
