@@ -133,8 +133,8 @@ def _no_single_plane(joint: Joint, count: int) -> str:
         )
     return (
         f"joint {joint.name!r} touches nothing: no surfaces of {joint.between[0]!r} "
-        f"and {joint.between[1]!r} share an area where its patches are; check positions, "
-        "units and patches"
+        f"and {joint.between[1]!r} share an area where its patches are; check "
+        "positions, units and patches"
     )
 
 
