@@ -9,8 +9,8 @@ python benchmarks/structures/machine_reduction_page.py RECORDS
     [--command FOLDER] [--page docs/machine-reduction.md]
 
 `machine_reduction.jsonl` holds the records of the page. With --command, `jointbench
-machine` is also run twice on `examples/grinder.toml` with 4.2 times the cells, and its cost
-is appended to the records.
+machine` is also run twice on `examples/grinder.toml` with 4.2 times the cells, and its
+cost is appended to the records.
 """
 
 import argparse
