@@ -95,7 +95,7 @@ def fit_band_limited(surfaces: Sequence[Surface], *, degree: int = 1) -> BandLim
         reason why no self-affine band describes it.
 
     Raises:
-        UsageError: lines shorter than 256 points, or several maps.
+        UsageError: lines shorter than 64 points, or several maps.
         SurfaceTooSmall: too few measured points.
 
     Source:

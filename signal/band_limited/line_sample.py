@@ -18,7 +18,7 @@ from jointbench.signal.surface.complete_lines import WHOLE_TAPER, complete_lines
 from jointbench.signal.surface.levelling import level
 from jointbench.signal.surface.line_spectrum import spectrum_of_lines
 
-FEWEST_POINTS = 256
+FEWEST_POINTS = 64
 """Least points of a line for a fit [-]."""
 _BLOCKS = 128
 """Blocks of a profile [-]: enough that the spectrum beyond half of them is free of what

@@ -148,7 +148,7 @@ def test_two_processes_have_moments_but_no_self_affine_band():
 
 
 def test_short_lines_are_refused_with_the_remedy():
-    heights = np.random.default_rng(1).standard_normal(100)
+    heights = np.random.default_rng(1).standard_normal(60)
     with pytest.raises(UsageError, match="measure a longer line"):
         fit_band_limited([Profile("short", heights, PITCH, all_valid(heights))])
 
