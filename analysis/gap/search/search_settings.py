@@ -162,7 +162,7 @@ class SearchSettings:
         "of the best cost",
         "cost above which a start of another family than one that explains the "
         "records ends after a selection round",
-        "case 12: two Iwan elements at 50 times the cost took a sixth of the time; "
+        "case 12: two Iwan elements at 50 times the cost took a tenth of the time; "
         "those that come near have 14 times at most",
     )
     rivals_kept: int = numerical(
