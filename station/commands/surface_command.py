@@ -21,6 +21,7 @@ from jointbench.station.pipeline.roughness_words import (
     HEADING,
     roughness_words,
 )
+from jointbench.station.pipeline.surface_json import fit_json, surface_json
 from jointbench.station.pipeline.surface_options import (
     PLAIN,
     SurfaceOptions,
@@ -31,8 +32,6 @@ from jointbench.station.pipeline.surface_stages import (
     SurfaceChain,
     analyse_surface,
     chain_cautions,
-    fit_json,
-    surface_json,
     with_band,
     with_remedy,
 )
