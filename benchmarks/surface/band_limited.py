@@ -178,15 +178,13 @@ def main() -> None:
     rows: list[dict[str, object]] = []
     if asked.log.exists():
         rows = [json.loads(line) for line in asked.log.read_text().splitlines()]
-    done = {row["cell"] for row in rows}
-    for cell in (cell for cell in cells if cell.words not in done):
-        own = [
-            {"cell": cell.words, **judged(cell, one)}
-            for one in profiles(cell, asked.count, asked.seed)
-        ]
-        rows += own
-        with asked.log.open("a") as file:
-            file.writelines(json.dumps(row) + "\n" for row in own)
+    for cell in cells:
+        done = sum(row["cell"] == cell.words for row in rows)
+        left = max(0, asked.count - done)
+        for one in profiles(cell, left, asked.seed + done) if left else ():
+            rows.append({"cell": cell.words, **judged(cell, one)})
+            with asked.log.open("a") as file:
+                file.write(json.dumps(rows[-1]) + "\n")
     print(table(rows, cells))
 
 

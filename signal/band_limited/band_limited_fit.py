@@ -27,6 +27,7 @@ from jointbench.signal.band_limited.roughness_moments import (
 )
 from jointbench.signal.band_limited.scoring_search import Maximum, maximise
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
+from jointbench.signal.band_limited.tip_width import tip_surprise
 from jointbench.signal.band_limited.weighted_draws import WeightedDraws, draw
 
 SATURATED_RATIO = 5.41
@@ -130,17 +131,20 @@ def _models(
 ) -> tuple[Maximum, ...]:
     """Return the maxima without blur and noise, with either, and with both."""
     found: list[Maximum] = []
-    for blur, noise in product((False, True), repeat=2):
+    # A stated tip acts on every trace.
+    tip = likelihood.sample.transfer.tip is not None
+    for blur, noise in product((True,) if tip else (False, True), (False, True)):
         mask = np.concatenate([free, [blur, noise]])
         tried = [
             maximise(likelihood, np.where(mask | _SURFACE, start, 0.0), mask)
             for start in starts
         ]
         best = max(tried, key=lambda one: one.value)
-        if np.all(best.parameters[mask & ~_SURFACE] > 0):
-            found.append(best)
-        if not (blur or noise):
+        if not found:
             starts = [np.append(best.parameters[:3], _SMALL)]
+        # A blur or noise of nothing is the model without it.
+        if not found or np.all(best.parameters[mask & ~_SURFACE] > 0):
+            found.append(best)
     return tuple(found)
 
 
@@ -197,6 +201,7 @@ def _no_band(found: _Found, reason: str) -> BandLimitedFit:
         roll_off_beyond=None,
         height=None,
         short_cut=None,
+        tip_deviation=None,
         noise=0.0,
         moments=measured_moments(sample),
         tolerance=found.likelihood.tolerance,
@@ -232,6 +237,7 @@ def _described(found: _Found) -> BandLimitedFit:
         roll_off_beyond=beyond * sample.pitch,
         height=_whole_height(likelihood, draws, best) if saturated else None,
         short_cut=cut if best[3] > 0 else replace(cut, low=0.0),
+        tip_deviation=None if sample.transfer.tip is None else _tip(found),
         noise=sample.scale * float(np.sqrt(model.noise)),
         moments=modelled_moments(likelihood, draws, best),
         tolerance=likelihood.tolerance,
@@ -257,6 +263,14 @@ def _whole_height(
 
     values = np.array([height(one) for one in draws.parameters])
     return draws.estimate(values, height(best))
+
+
+def _tip(found: _Found) -> float:
+    """Return how far the blur that the heights show is from the stated tip's [sd]."""
+    bare = replace(found.likelihood, heeds_tip=False)
+    mask = np.diag(found.best.information) > 0
+    free = maximise(bare, found.best.parameters, mask)
+    return tip_surprise(bare.model(free.parameters), bare.sample)
 
 
 def _beyond(found: _Found) -> float:

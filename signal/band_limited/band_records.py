@@ -77,6 +77,8 @@ class BandLimitedFit:
             the longest.
         short_cut: wavelength at which the spectrum is cut by half in amplitude beyond
             what is known of the instrument [m]; its low end is 0 where none is found.
+        tip_deviation: distance of the fitted blur from that of a stated stylus
+            [standard deviations]; None where no radius is stated.
         noise: standard deviation of each height [m].
         moments: within the stated wavelengths; None where no wave is resolved.
         tolerance: by which ln density differs from the model beyond its scatter [-].
@@ -92,6 +94,7 @@ class BandLimitedFit:
     roll_off_beyond: float | None
     height: Interval95 | None
     short_cut: Interval95 | None
+    tip_deviation: float | None
     noise: float
     moments: RoughnessMoments | None
     tolerance: float

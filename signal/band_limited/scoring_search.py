@@ -11,6 +11,11 @@ from jointbench.signal.band_limited.spectral_likelihood import (
     IMPOSSIBLE,
     SpectralLikelihood,
 )
+from jointbench.signal.band_limited.tip_width import (
+    SHARE,
+    contact_length,
+    tip_information,
+)
 
 _STEPS = 60
 """Most steps of a search; 8 to 15 are usual [-]."""
@@ -106,6 +111,9 @@ def information_at(
         density = likelihood.model(moved).sampled(omega, sample.transfer)
         slopes[k] = (np.log(density + FLOOR) - base) / move
     information: FloatArray = (slopes * counts) @ slopes.T
+    if likelihood.heeds_tip and sample.transfer.tip is not None and free[3]:
+        width = SHARE * contact_length(likelihood.model(at), sample)
+        information[3, 3] += tip_information(at, width)
     return information
 
 

@@ -9,6 +9,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.band_limited.block_means import wavenumbers
 from jointbench.signal.band_limited.line_sample import LineSample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
+from jointbench.signal.band_limited.tip_width import tip_surprise
 
 HURST_RANGE = (0.02, 1.1)
 """Range of H [-]; beyond 1 the surface is smooth, which a fit must be able to say."""
@@ -32,10 +33,12 @@ class SpectralLikelihood:
         sample: the heights.
         tolerance: standard deviation of ln density by which each bin of the spectrum
             may differ from the model [-].
+        heeds_tip: whether the stated radius of a stylus is a prior of the blur.
     """
 
     sample: LineSample
     tolerance: float = 0.0
+    heeds_tip: bool = True
 
     @property
     def pivot(self) -> float:
@@ -78,6 +81,8 @@ class SpectralLikelihood:
                 total += sample.blocks.log_likelihood(seen)
             except np.linalg.LinAlgError:
                 return IMPOSSIBLE
+        if self.heeds_tip:
+            total -= 0.5 * tip_surprise(model, sample) ** 2
         return total if np.isfinite(total) else IMPOSSIBLE
 
     def deviance(self, parameters: FloatArray) -> tuple[float, int]:

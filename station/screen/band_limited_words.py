@@ -11,6 +11,8 @@ from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.station.screen.value_text import engineering
 
 COLUMNS = ("surface", "H [-]", "roll-off", "rms height", "rms slope", "rms curvature")
+_FAR = 3.0
+"""Distance of a short cut from that of the stated stylus that is reported [sd]."""
 TITLE = "Band-limited surfaces (95 % intervals)"
 
 
@@ -41,12 +43,24 @@ def band_lines(fit: BandLimitedFit | None, reason: str | None) -> tuple[str, ...
         ends = (fit.moments.shortest, fit.moments.longest)
         low, high = (engineering(end, "m") for end in ends)
         said.append(f"height, slope and curvature of waves of {low} to {high}")
-    if fit.short_cut is not None and fit.short_cut.low > 0:
+    if fit.tip_deviation is not None:
+        said.append(_tip_words(fit.tip_deviation))
+    elif fit.short_cut is not None and fit.short_cut.low > 0:
         said.append(
             f"waves are cut by half at {_metres(fit.short_cut)}, beyond what is stated "
             "of the instrument: by the surface or by a blur that is not stated"
         )
     return tuple(said)
+
+
+def _tip_words(deviation: float) -> str:
+    if abs(deviation) <= _FAR:
+        return "the short cut is that of the stated stylus"
+    word = "wider" if deviation > 0 else "narrower"
+    return (
+        f"the short cut is {word} than that of the stated stylus, by "
+        f"{abs(deviation):.1f} standard deviations: is the radius right, is it worn?"
+    )
 
 
 def band_json(fit: BandLimitedFit | None, reason: str | None) -> dict[str, object]:
@@ -61,6 +75,7 @@ def band_json(fit: BandLimitedFit | None, reason: str | None) -> dict[str, objec
         "roll_off_beyond_m": fit.roll_off_beyond,
         "height_rms_m": _ends(fit.height),
         "short_cut_m": _ends(fit.short_cut),
+        "tip_deviation": fit.tip_deviation,
         "noise_m": fit.noise,
         "tolerance": fit.tolerance,
         "moments": None if fit.moments is None else _moments(fit.moments),
