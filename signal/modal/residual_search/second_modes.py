@@ -38,7 +38,7 @@ _PAIR = 2
 # Chi-squared over the number of values up to which two modes explain the lines, and up
 # to which the modes around them are taken from the same fit.
 _EXPLAINED, _WELL = 5.0, 1.5
-# Two references cannot tell a third mode closer to a pair than this many half-power
+# Two references cannot show a third mode closer to a pair than this many half-power
 # widths: the residue of a shared pole has rank two.
 _AT_ONE_POLE = 0.1
 _NONE = np.empty(0, np.int64)
