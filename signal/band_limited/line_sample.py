@@ -27,6 +27,8 @@ _SHORTEST_BLOCK = 4
 """Least samples of a block [-]."""
 _FIRST_ORDINATE = 3
 """Lowest ordinate where there are no blocks; levelling changes those below [-]."""
+_ROUNDING = 1e-9
+"""Root mean square over the range of the heights that is but rounding [-]."""
 _CLEAR_OF_FILTER = 1.0
 """Highest wavenumber of the fit over that of a known cut-off [-]."""
 
@@ -80,7 +82,8 @@ def line_sample(surfaces: Sequence[Surface], *, degree: int = 1) -> LineSample:
         degree: of the polynomial that was removed [-].
 
     Raises:
-        UsageError: several maps, profiles of different pitch, or lines too short.
+        UsageError: several maps, profiles of different pitch, lines too short, or no
+            roughness.
         SurfaceTooSmall: too few measured points.
     """
     first = surfaces[0]
@@ -93,7 +96,12 @@ def line_sample(surfaces: Sequence[Surface], *, degree: int = 1) -> LineSample:
         )
     spacing = first.spacing
     pitch = spacing if isinstance(spacing, float) else spacing[1]
-    scale = float(np.std(lines)) or 1.0
+    scale = float(np.std(lines))
+    if scale <= _ROUNDING * float(np.ptp(first.heights[first.valid])):
+        raise UsageError(
+            f"surface {first.name!r} is a plane to within rounding: there is no "
+            "roughness to fit; measure with a finer height range"
+        )
     lines = lines / scale
     related = isinstance(first, Areal)
     transfer = known_transfer(first)

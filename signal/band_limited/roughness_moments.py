@@ -110,7 +110,7 @@ def measured_moments(sample: LineSample) -> RoughnessMoments | None:
         total = float(terms.sum())
         spread = float(np.sqrt(np.sum(terms**2 / count))) / total
         reach = np.exp(0.5 * NORMAL_97_5 * spread)
-        value = np.sqrt(total)
+        value = float(np.sqrt(total))
         parts.append(Interval95(value, float(value / reach), float(value * reach)))
     return _in_metres(sample, (short, long), parts, modelled=False)
 

@@ -8,6 +8,7 @@ from scipy.special import gamma, kv
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import (
+    Areal,
     Profile,
     SurfaceInstrument,
     all_valid,
@@ -18,6 +19,7 @@ from jointbench.signal.band_limited.block_means import block_means, kernel_of
 from jointbench.signal.band_limited.known_transfer import KnownTransfer
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.surface.gaussian_filter import filter_waves
+from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.simulators.rough_surfaces.brownian import brownian_lines
 from jointbench.simulators.rough_surfaces.profilometer import traced
 from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
@@ -168,3 +170,18 @@ def test_a_stated_stylus_explains_the_short_cut_and_a_wrong_one_does_not():
     assert abs(right.tip_deviation) < 3
     assert right.hurst.covers(0.5)
     assert abs(found(10 * radius).tip_deviation) > 3
+
+
+@pytest.mark.parametrize("shape", [(300,), (80, 80)])
+def test_a_plane_is_refused(shape):
+    """Nothing is left of it but rounding, in a profile and in a map."""
+    heights = np.linspace(0, 1e-6, np.prod(shape)).reshape(shape)
+    valid = all_valid(heights)
+    flat = (
+        Profile("flat", heights, PITCH, valid)
+        if len(shape) == 1
+        else Areal("flat", heights, (PITCH, PITCH), valid)
+    )
+    with pytest.raises(UsageError, match="no roughness to fit"):
+        fit_band_limited([flat])
+    assert line_spectrum(flat) is not None
