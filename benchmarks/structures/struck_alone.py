@@ -14,7 +14,6 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,15 +26,9 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.structures.matrices.element_assembly import Material
 from jointbench.analysis.structures.matrices.parts import MeshedBody, solid_body
 from jointbench.analysis.structures.matrices.structure import build_structure, pick
-from jointbench.analysis.structures.measured.measured_body import (
-    ModalTable,
-    modal_body,
-)
-from jointbench.analysis.structures.measured.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.measured.coupled_measurements import coupled_modes
+from jointbench.analysis.structures.measured.frf_coupling import FrfLink
 from jointbench.analysis.structures.meshes.mesh import box_mesh
-from jointbench.analysis.structures.reduction.assembled import assemble_components
-from jointbench.analysis.structures.reduction.port_joints import PortJoint
-from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from tests.judges.struck_bodies import Hammering, dense_modes, struck
 
 BAND = (60.0, 1190.0)
@@ -49,6 +42,8 @@ are struck point by point in simulation (five hits a point, noise at {decibel:g}
 dense modes of their own meshes), and joined in three points and three directions by
 springs. Every seed draws the sizes of both (10 %), the springs (100 MN/m to 1 GN/m) and the
 noise. The truth is the eigenvalues of both meshes with the springs. Intervals are 95 %.
+Seeds {first} to {last}; none of them was used while the fit was developed (0 to 19 and 2001
+to 2028 were).
 
 | mode | seeds | largest error | median error | intervals that hold | Wilson, 95 % | median sd |
 |---|---|---|---|---|---|---|
@@ -92,21 +87,18 @@ def one_seed(seed: int) -> dict[str, Any]:
         blocks.append(struck(body.name, modes, rows[-1], Hammering(), random))
     truth = joined(matrices, rows, spring)
 
-    def lowest(tables: Sequence[ModalTable]) -> FloatArray:
-        beam = modal_body(tables[0], {"feet": range(9), "tip": [9]})
-        block = modal_body(tables[1], {"top": range(9)})
-        joint = PortJoint("feet", ("beam", "feet"), ("block", "top"), ("xyz",))
-        whole = assemble_components([beam, block], [joint], box=(1e7, 1e10), modes=9)
-        found, _ = whole.modes(JointValues(np.array([spring]), np.zeros(1)), 10)
-        return found[found > BAND[0]][:MODES]
-
-    found, sd = with_uncertainty(lowest, blocks, BAND, draws=DRAWS)
+    links = [FrfLink(("beam", at), ("block", at), spring) for at in range(9)]
+    modes = coupled_modes(blocks, links, BAND, draws=DRAWS)
+    found = np.concatenate([modes.frequency, np.full(MODES, np.nan)])[:MODES]
+    sd = np.concatenate([modes.frequency_sd, np.full(MODES, np.nan)])[:MODES]
     return {
         "seed": seed,
         "spring": spring,
         "truth": truth.tolist(),
         "found": found.tolist(),
         "sd": sd.tolist(),
+        "modes": modes.frequency.tolist(),
+        "remarks": list(modes.remarks),
         "seconds": time.process_time() - begin,
     }
 
@@ -148,13 +140,15 @@ def page(done: list[dict[str, Any]]) -> str:
         inside = held[own]
         low, high = wilson(int(inside.sum()), inside.size)
         lines.append(
-            f"| {name} | {len(done)} | {100 * error[own].max():.2f} % | "
+            f"| {name} | {len(done)} | {100 * error[own].max():.3f} % | "
             f"{100 * np.median(error[own]):.3f} % | {inside.sum()} of {inside.size} | "
             f"{100 * low:.0f} to {100 * high:.0f} % | "
             f"{100 * np.median((sd / truth)[own]):.3f} % |"
         )
     return PAGE.format(
         rows="\n".join(lines),
+        first=done[0]["seed"],
+        last=done[-1]["seed"],
         decibel=Hammering().decibel,
         bar="0.5 %",
         above=int((error > BAR).sum()),

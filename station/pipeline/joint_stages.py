@@ -9,12 +9,12 @@
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field, replace
 from typing import Any, TypeVar
 
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.acquisition.records.recordings import Recording
-from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.analysis.contact.model_catalogue import contact_law_code
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.installed_effects import (
@@ -33,9 +33,13 @@ from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
-from jointbench.signal.surface.structure_function import (
-    StructureFunction,
-    structure_function,
+from jointbench.signal.surface.structure_function import StructureFunction
+from jointbench.signal.surface.surface_treatment import (
+    UNTREATED,
+    SurfaceTreatment,
+    outside_filters,
+    treated,
+    treated_structure,
 )
 from jointbench.station.pipeline.joint_comparison import (
     ContactPrediction,
@@ -74,7 +78,10 @@ class Remarks:
 
 
 def surface_stages(
-    surfaces: Iterable[Surface], run: StageRun, gamma: float = DEFAULT_GAMMA
+    surfaces: Iterable[Surface],
+    run: StageRun,
+    gamma: float = DEFAULT_GAMMA,
+    treatment: SurfaceTreatment = UNTREATED,
 ) -> tuple[SurfaceChain, ...]:
     """Return the structure function and the fractal fit of each surface.
 
@@ -82,22 +89,29 @@ def surface_stages(
         surfaces: heights.
         run: store and source.
         gamma: frequency ratio of the profile that D and G belong to [-].
+        treatment: of each surface before its fit; a direction is for maps only.
     """
-    return tuple(_surface(surface, run, gamma) for surface in surfaces)
+    return tuple(_surface(one, run, gamma, treatment) for one in surfaces)
 
 
-def _surface(surface: Surface, run: StageRun, gamma: float) -> SurfaceChain:
+def _surface(
+    given: Surface, run: StageRun, gamma: float, asked: SurfaceTreatment
+) -> SurfaceChain:
     stages = run.stages
-    first = stages.key("structure", None, *run.source(surface.name, surface))
+    treatment = asked if isinstance(given, Areal) else replace(asked, direction=None)
+    surface = treated(given, treatment)
+    settings = None if treatment == UNTREATED else astuple(treatment)
+    first = stages.key("structure", settings, *run.source(given.name, given))
     structure = stages.run(
         f"structure of {surface.name}",
         first,
         StructureFunction,
-        lambda: structure_function(surface),
+        lambda: treated_structure(given, treatment)[1],
     )
     name = f"surface {surface.name}"
     key = stages.key("surface", gamma, first)
-    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(structure, gamma=gamma))
+    shown = outside_filters(structure, surface)
+    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(shown, gamma=gamma))
     return SurfaceChain(surface, structure, fit)
 
 
@@ -136,6 +150,7 @@ def gap_stage(
     bench: BenchModel,
     without: Sequence[str],
     run: StageRun,
+    curves: MeasuredCurves | None = None,
 ) -> Page:
     """Ask what a model lacks, as `jointbench gap` does; verdict and evidence as JSON.
 
@@ -144,6 +159,8 @@ def gap_stage(
         bench: the model.
         without: names of effects to leave out of the catalogue.
         run: store and source.
+        curves: modes over amplitude at the model's preload, compared with what the
+            explanations predict; None for no comparison.
     """
     left, entries = frozenset(without), installed_catalogue()
 
@@ -154,6 +171,7 @@ def gap_stage(
             nominal_parameters(bench),
             without=left,
             entries=entries,
+            curves=curves,
         )
         packages = effect_packages(entries)
         page = diagnosis_json(found) | {"left_out": list(left_out)}
@@ -164,7 +182,9 @@ def gap_stage(
     facts = run.stages.digest(
         tuple((r.name, r.hits, r.preload, r.provenance) for r in judged)
     )
-    return run.stages.run("gap", run.stages.key("gap", given, known, facts), Page, make)
+    compared = run.stages.digest(curves)
+    key = run.stages.key("gap", given, known, facts, compared)
+    return run.stages.run("gap", key, Page, make)
 
 
 def gap_of(

@@ -2,14 +2,22 @@
 """``jointbench surface``: structure function and fractal parameters of surfaces."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
+from jointbench.signal.band_limited.band_records import BandLimitedFit
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.verdict_records import FractalFit
+from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
+from jointbench.signal.surface.levelling import level
+from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.signal.surface.structure_function import StructureFunction
-from jointbench.signal.surface.surface_treatment import treated_structure
+from jointbench.signal.surface.surface_treatment import (
+    outside_filters,
+    treated_structure,
+)
 from jointbench.station.pipeline.roughness_words import (
     caution_lines,
     roughness_json,
@@ -21,16 +29,32 @@ from jointbench.station.pipeline.surface_options import (
     SurfaceOptions,
     beside_the_fit,
 )
+from jointbench.station.pipeline.surface_remedies import remedy
+from jointbench.station.screen.band_limited_words import band_json, qualified
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceChain:
-    """A surface, its structure function and what it says."""
+    """A surface, its structure function and what it says.
+
+    Attributes:
+        surface: treated as asked.
+        structure: its structure function.
+        fit: D and G, or the reason for none.
+        beside: what options ask in addition.
+        remedy: what would give the surface a scaling range; None where it has one, or
+            where none was looked for.
+        band: the band-limited surface; None where none was fitted.
+        no_band: why none was fitted.
+    """
 
     surface: Surface
     structure: StructureFunction
     fit: FractalFit
     beside: Beside = NOTHING_BESIDE
+    remedy: str | None = None
+    band: BandLimitedFit | None = None
+    no_band: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +64,7 @@ class Pooled:
     structure: StructureFunction
     fit: FractalFit
     beside: Beside
+    band: BandLimitedFit
 
 
 def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> SurfaceChain:
@@ -51,7 +76,29 @@ def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> Surfac
     """
     flat, structure = treated_structure(surface, options.treatment)
     beside = beside_the_fit(flat, structure, options)
-    return SurfaceChain(flat, structure, fit_fractal(structure), beside)
+    fit = fit_fractal(outside_filters(structure, flat))
+    return SurfaceChain(flat, structure, fit, beside)
+
+
+def with_remedy(
+    chain: SurfaceChain, given: Surface, asked: SurfaceOptions
+) -> SurfaceChain:
+    """Return a chain that names what would help a surface without a scaling range."""
+    return replace(chain, remedy=remedy(given, chain.fit, asked.treatment))
+
+
+def with_band(chain: SurfaceChain, asked: SurfaceOptions) -> SurfaceChain:
+    """Return a chain with its band-limited surface, and a verdict that heeds it."""
+    if asked.treatment.direction is not None:
+        said = "it runs along the rows of a map; leave out --direction"
+        return replace(chain, no_band=said)
+    try:
+        band = fit_band_limited([chain.surface], degree=asked.treatment.form or 1)
+    except (BadData, UsageError) as error:
+        return replace(chain, no_band=str(error))
+    verdict, reason = qualified(chain.fit, band)
+    fit = replace(chain.fit, verdict=SurfaceVerdict(verdict), reason=reason)
+    return replace(chain, band=band, fit=fit)
 
 
 def chain_cautions(chain: SurfaceChain) -> tuple[str, ...]:
@@ -64,6 +111,9 @@ def surface_json(chain: SurfaceChain) -> dict[str, object]:
     said = cautions(chain.surface.provenance)
     return {
         **fit_json(chain.surface.name, chain.fit, said),
+        "remedy": chain.remedy,
+        "band_limited": band_json(chain.band, chain.no_band),
+        "spectrum": spectrum_json(chain.surface),
         **dict(chain.beside.keys),
     }
 
@@ -93,4 +143,16 @@ def fit_json(name: str, fit: FractalFit, said: Sequence[str]) -> dict[str, objec
             "sd": fit.local_slope.sd.tolist(),
         },
         "provenance": [{"step": s.name, **dict(s.detail)} for s in fit.provenance],
+    }
+
+
+def spectrum_json(surface: Surface) -> dict[str, object] | None:
+    """Return the power spectral density along the lines of a surface as plain data."""
+    found = line_spectrum(level(surface))
+    if found is None:
+        return None
+    return {
+        "wavelength_m": (1 / found.frequency).tolist(),
+        "density_m3": found.density.tolist(),
+        "ordinates": found.count.tolist(),
     }

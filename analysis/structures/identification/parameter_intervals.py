@@ -6,8 +6,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.identification.multistart import (
+from jointbench.analysis.structures.identification.solution_branches import (
     LARGEST_LOG_SD,
+)
+from jointbench.analysis.structures.identification.stiffness_descent import (
     descend,
     with_value,
 )
