@@ -63,6 +63,9 @@ class NominalFile(_NominalPart):
 
     schema_: Literal["bench-sheet/1"] = Field(alias="schema")
     plates: _Plates
+    bolts_mm: Annotated[
+        tuple[tuple[Finite, Finite, Finite], ...], Field(max_length=1000)
+    ] = ()
     torques: Annotated[
         tuple[Positive, ...], Field(alias="torques_Nm", min_length=1, max_length=100)
     ]
@@ -122,4 +125,5 @@ def _nominal(found: NominalFile) -> NominalBench:
         aim_sd=1e-3 * found.aim_sigma_mm,
         tilt_sd=math.radians(found.tilt_sigma_deg),
         torque_reference=float(np.median(found.torques)),
+        bolt_places=1e-3 * np.array(found.bolts_mm).reshape(-1, 3)[:, :2],
     )

@@ -71,7 +71,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     if first.passed:
         return StructureOutcome(none, whole, whole)
     carried = _carried(few, near, screening, progress)
-    done = _in_whole_records(bench, base, carried, progress)
+    done = _in_whole_records(bench, few, base, carried, progress)
     if not done:
         return StructureOutcome(none, whole, whole)
     best = done[0]
@@ -197,11 +197,18 @@ def _carried(
 
 
 def _chosen(few: StructureBench, screening: Screening) -> list[Candidate]:
-    """Return the leaders of the directed tests, and those that are always tried."""
+    """Return the leaders of the directed tests, and those that are always tried.
+
+    An effect leads at a few sites at most, else one that follows any residual would
+    fill all places.
+    """
     always = {e.effect.name for e in few.entries if e.always}
-    leaders = screening.leaders(len(few.candidates))
     chosen = [c for c in few.candidates if c.effect.name in always]
-    others = [c for c in leaders if c not in chosen]
+    others: list[Candidate] = []
+    for c in screening.leaders(len(few.candidates)):
+        same = sum(c.effect.name == one.effect.name for one in others)
+        if c not in chosen and same < STRUCTURE.leading_sites:
+            others.append(c)
     return others[: STRUCTURE.leaders] + chosen
 
 
@@ -232,16 +239,54 @@ class _WholeFit:
 
 
 def _in_whole_records(
-    bench: StructureBench, base: Fit, carried: Sequence[Fit], progress: Progress
+    bench: StructureBench,
+    few: StructureBench,
+    base: Fit,
+    carried: Sequence[Fit],
+    progress: Progress,
 ) -> list[_WholeFit]:
     """Fit the best candidates to whole records, accepted ones first."""
     done: list[_WholeFit] = []
     bench = replace(bench, reach=STRUCTURE.final_reach)
     for fit in _worth_it(carried):
         progress(f"{fit.candidates[0].label} in whole records")
-        own, found = settled(bench, fit.x, fit.candidates, STRUCTURE.table_floor)
+        start = _approached(few, fit)
+        own, found = settled(bench, start, fit.candidates, STRUCTURE.table_floor)
         done.append(_WholeFit(own, found, accept_structure(own, found, base)))
     return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
+
+
+def _approached(few: StructureBench, fit: Fit) -> FloatArray:
+    """Return a start in whole records: with nonlinear laws, window by window."""
+    if not few.nonlinear(fit.candidates):
+        return fit.x
+    for window in STRUCTURE.law_windows:
+        few, fit = _settled_in(few, fit, Resolution(window))
+    return fit.x
+
+
+def _settled_in(
+    few: StructureBench, fit: Fit, window: Resolution
+) -> tuple[StructureBench, Fit]:
+    """Fit a window, in turn with where each hit landed."""
+    landing = few.landing
+    for _ in range(STRUCTURE.law_rounds):
+        few = few.at(fit.base, fit.terms, landing, few.floor)
+        problem = make_problem(few, fit.candidates)
+        before = cost_at(problem, fit.x, window)
+        fit = minimise(
+            problem,
+            fit.x,
+            window,
+            iterations=STRUCTURE.law_iterations,
+            exact_slopes=False,
+        )
+        if before - fit.cost < STRUCTURE.settled_share * fit.cost and landing.any():
+            break
+        if fit.chi2 > STRUCTURE.near_chi2 * fit.residual.size:
+            break
+        landing, _ = few.landed(fit.base, fit.terms, window.window)
+    return few, fit
 
 
 def _judged(none: SearchOutcome, done: Sequence[_WholeFit]) -> SearchOutcome:

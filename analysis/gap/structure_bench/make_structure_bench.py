@@ -6,12 +6,15 @@ import numpy as np
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.structure_bench.base_layout import base_layout
 from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_bench.structure_bench import (
     StructureBench,
     record_blocks,
 )
-from jointbench.analysis.gap.structure_bench.structure_effects import (
+from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
+)
+from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_candidates,
     without_effects,
@@ -68,11 +71,27 @@ def _scales(campaign: HitCampaign) -> dict[str, float]:
     inside = (0.5 * np.pi * hits.band) ** 2 * mass / 2 / bodies.bolts.shape[0]
     stiffness = float(np.exp(np.mean(np.log(known)))) if known.size else inside
     force = float(np.abs(hits.raw_force).max())
+    travel = force / stiffness / bodies.bolts.shape[0]
+    speed = travel * np.pi * hits.band
+    places = nominal.bolt_places
+    moment = (
+        stiffness
+        * max(
+            float(np.sum(places.var(axis=0))) if len(places) else 0.0,
+            STRUCTURE.least_arm**2,
+        )
+        * max(len(places), 1)
+    )
     return {
         "one": 1.0,
         "mass": mass,
+        "stiffness": stiffness,
         "compliance": 1.0 / stiffness,
-        "travel": force / stiffness / bodies.bolts.shape[0],
+        "rocking": 1.0 / moment,
+        "travel": travel,
+        "stiffness/travel": stiffness / travel,
+        "stiffness/travel^2": stiffness / travel**2,
+        "damping/speed": float(nominal.damping[NORMAL]) / speed,
         "band": hits.band,
         "sample time": 1.0 / hits.sample_rate,
     }

@@ -21,7 +21,11 @@ from jointbench.analysis.gap.structure_bench.landing import (
     landing_weights,
     point_columns,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import PortLaws, iwan_sliders
+from jointbench.analysis.gap.structure_bench.port_laws import (
+    LawKind,
+    PortLaws,
+    iwan_sliders,
+)
 
 NOMINAL = NominalBench(
     stiffness=np.array([3e6, 4e6, 8e6]),
@@ -37,6 +41,7 @@ NOMINAL = NominalBench(
     aim_sd=1e-3,
     tilt_sd=0.02,
     torque_reference=40.0,
+    bolt_places=np.zeros((0, 2)),
 )
 LANDING = np.array([[0.02, -0.01, 8e-4, -5e-4], [0.0, 0.0, 0.0, 0.0]])
 
@@ -84,18 +89,32 @@ def test_the_linear_response_is_that_of_an_integrator() -> None:
     assert distance(found, judged(made, state)) < 1e-4
 
 
-def test_micro_slip_at_four_bolts_is_that_of_an_integrator() -> None:
-    """Sliders at eight ports agree with solve_ivp to 1e-4 of the peak."""
+FOUR_LAWS = (
+    PortLaws((2,), 4e15, kind=LawKind.CUBIC),
+    PortLaws((5,), 1e11, kind=LawKind.QUADRATIC),
+    PortLaws((8,), 2e7, kind=LawKind.STOP, gap=2e-6),
+    PortLaws((11,), 2e4, kind=LawKind.SQUARE_DAMPING),
+)
+
+
+@pytest.mark.parametrize("others", [(), FOUR_LAWS])
+def test_laws_at_four_bolts_are_those_of_an_integrator(
+    others: tuple[PortLaws, ...],
+) -> None:
+    """Sliders at eight ports, alone and beside four normal laws, agree to 1e-4."""
     made = campaign()
     slips, weights = iwan_sliders(1e-6, 1.6)
     ports = tuple(3 * k + d for k in range(4) for d in (0, 1))
     linear = state_at(made)
-    state = replace(linear, laws=PortLaws(ports, 0.5, slips, weights))
+    slides = PortLaws(ports, 0.5, slips, weights)
     weights_of_hits = landing_weights(LANDING)
-    found = model_of(made, state).response(weights_of_hits)[0]
-    stuck = model_of(made, linear).response(weights_of_hits)[0]
+    found, stuck, without = (
+        model_of(made, replace(linear, laws=laws)).response(weights_of_hits)[0]
+        for laws in ((slides, *others), (), (slides,))
+    )
     assert distance(found, stuck) > 0.02
-    assert distance(found, judged(made, state)) < 1e-4
+    assert not others or distance(found, without) > 0.02
+    assert distance(found, judged(made, replace(linear, laws=(slides, *others)))) < 1e-4
 
 
 def test_an_added_mass_is_that_of_an_integrator() -> None:
