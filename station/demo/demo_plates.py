@@ -134,7 +134,7 @@ def _write(
     report = replace(report, simulated=True)
     write_report(with_structure(report, done.plan, done.found), out / FILES[3])
     summary = {
-        "comparisons": [as_json(one) for one in comparisons],
+        "comparisons": as_json(comparisons),
         "gap": diagnosis_json(done.found),
         "truth": {key: truth[key] for key in ("effects", "where")},
         "remarks": list(done.remarks),

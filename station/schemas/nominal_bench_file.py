@@ -58,6 +58,11 @@ class _Feet(_NominalPart):
     rel_sigma: _Sigmas
 
 
+class _Table(_NominalPart):
+    frequency_rel_sigma: Annotated[float, Field(ge=0, le=0.1)] = 0.0
+    shape_rel_sigma: Annotated[float, Field(ge=0, le=0.3)] = 0.0
+
+
 class NominalFile(_NominalPart):
     """the nominal parameters as written."""
 
@@ -78,6 +83,7 @@ class NominalFile(_NominalPart):
     plate_damping_ratio: Positive
     plate_damping_rel_sigma: Sigma
     feet: _Feet
+    modal_table: _Table = _Table()
 
 
 def read_nominal(path: Path) -> tuple[NominalBench, dict[str, PlannedPoint]]:
@@ -126,4 +132,8 @@ def _nominal(found: NominalFile) -> NominalBench:
         tilt_sd=math.radians(found.tilt_sigma_deg),
         torque_reference=float(np.median(found.torques)),
         bolt_places=1e-3 * np.array(found.bolts_mm).reshape(-1, 3)[:, :2],
+        table_sd=(
+            found.modal_table.frequency_rel_sigma,
+            found.modal_table.shape_rel_sigma,
+        ),
     )

@@ -60,7 +60,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
     start = _base_in_windows(few)
-    few = few.at(start, (), few.landing, STRUCTURE.table_floor)
+    few = few.at(start, (), few.landing, few.table_floor)
     progress("base in whole records")
     whole, base = _base_in_whole_records(bench, few, start)
     first = accept_structure(whole, base, base)
@@ -91,7 +91,8 @@ def _base_in_windows(few: StructureBench) -> FloatArray:
     """Fit the base from its nominal values, coarse to fine."""
     x = np.zeros(few.base_sd.size)
     for window in STRUCTURE.base_windows:
-        few = few.at(x, (), few.landing, STRUCTURE.coarse_floor)
+        floor = max(STRUCTURE.coarse_floor, few.table_floor)
+        few = few.at(x, (), few.landing, floor)
         problem = make_problem(few, ())
         x = minimise(problem, x, Resolution(window), iterations=8, exact_slopes=False).x
     return x
@@ -108,9 +109,9 @@ def _base_in_whole_records(
     reach = STRUCTURE.final_reach
     r = make_problem(few, ()).residual(start, LONGER)
     if float(r @ r) < STRUCTURE.near_chi2 * r.size:
-        return settled(replace(bench, reach=reach), start, (), STRUCTURE.table_floor)
+        return settled(replace(bench, reach=reach), start, (), bench.table_floor)
     x = _whole(replace(few, reach=reach), start, ()).x
-    whole = replace(bench, reach=reach).at(x, (), bench.landing, STRUCTURE.table_floor)
+    whole = replace(bench, reach=reach).at(x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
 
 
@@ -251,7 +252,7 @@ def _in_whole_records(
     for fit in _worth_it(carried):
         progress(f"{fit.candidates[0].label} in whole records")
         start = _approached(few, fit)
-        own, found = settled(bench, start, fit.candidates, STRUCTURE.table_floor)
+        own, found = settled(bench, start, fit.candidates, bench.table_floor)
         done.append(_WholeFit(own, found, accept_structure(own, found, base)))
     return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
 

@@ -74,7 +74,7 @@ def modal_receptances(
     bodies: JointedBodies, state: JointState, s: ComplexArray
 ) -> ComplexArray:
     """Return the displacement of each free mode per modal force, (n_lines, n_modes)."""
-    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
+    omega = state.omega(bodies)
     s = s[:, None]
     dynamic = s**2 + 2.0 * state.loss[bodies.body] * omega * s + omega**2
     return np.asarray(1.0 / (dynamic * state.mass[bodies.body]))
@@ -249,7 +249,7 @@ def response_slopes(
         By coordinate, shape (n_lines, n_rows, n_columns) each.
     """
     ends = closed_rows(found, bodies, state)
-    slopes = _modal_slopes(found, ends, bodies, state)
+    slopes = _modal_slopes(found, ends, bodies, state, layout)
     left = ends.left.transpose(0, 2, 1)
     for name, (joints, change) in _compliance_slopes(
         found, bodies, state, layout
@@ -260,11 +260,14 @@ def response_slopes(
 
 
 def _modal_slopes(
-    found: Closure, ends: ClosedRows, bodies: JointedBodies, state: JointState
+    found: Closure,
+    ends: ClosedRows,
+    bodies: JointedBodies,
+    state: JointState,
+    layout: BaseLayout,
 ) -> dict[str, ComplexArray]:
-    """Return the slopes by modulus and mass of each body and by the damping ratio."""
-    root = np.sqrt(state.modulus)[bodies.body]
-    omega, s = bodies.omega * root, found.s[:, None]
+    """Return the slopes by modulus, mass, damping ratio and frequencies."""
+    omega, s = state.omega(bodies), found.s[:, None]
     d = modal_receptances(bodies, state, found.s)
     square = -(d**2) * state.mass[bodies.body]
     loss = state.loss[bodies.body]
@@ -282,6 +285,8 @@ def _modal_slopes(
         slopes[modulus_name(name)] = across(by_modulus, modes)
         slopes[loss_name(name)] = across(by_loss, modes)
         slopes[mass_name(name)] = across(-d, modes)
+    for mode, name in layout.tuned:
+        slopes[name] = across(2.0 * by_modulus, slice(mode, mode + 1))
     return slopes
 
 

@@ -87,6 +87,8 @@ class JointState:
         sensors: motion along each sensor, shape (n_channels, n_modes); None for that
             of the bodies.
         cables: resonances in the signals of channels.
+        tuning: factor on the natural frequency of each free mode [-], shape
+            (n_modes,).
         attached: masses and oscillators.
         gain: relative gain of each channel less 1 [-], shape (n_channels,).
         lag: of each channel [s], shape (n_channels,).
@@ -103,6 +105,7 @@ class JointState:
     gain: FloatArray
     lag: FloatArray
     foot_factor: FloatArray
+    tuning: FloatArray
     exponent: float = 0.0
     damping_exponent: float = 0.0
     rocking: FloatArray | None = None
@@ -114,7 +117,12 @@ class JointState:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "modulus", "mass", "loss", "compliance", "damping", "bolt")
-        freeze(self, "gain", "lag", "foot_factor")
+        freeze(self, "gain", "lag", "foot_factor", "tuning")
+
+    def omega(self, bodies: JointedBodies) -> FloatArray:
+        """Return the natural angular frequencies of the free modes [rad/s]."""
+        root = np.sqrt(self.modulus)[bodies.body]
+        return np.asarray(bodies.omega * root * self.tuning)
 
     def at_torque(self, ratio: float) -> "JointState":
         """Return the state with the damping of a torque.
@@ -139,6 +147,9 @@ def state_of(
     along = factor[BaseName.NORMAL_DAMPING]
     foot = factor[BaseName.FOOT], factor[BaseName.FOOT_DAMPING]
     channels = len(bodies.channels)
+    tuning = np.ones(bodies.omega.size)
+    for mode, name in layout.tuned:
+        tuning[mode] = factor[name]
     contrast = base[layout.sd.size - layout.contrasts.shape[1] :]
     return JointState(
         modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
@@ -151,6 +162,7 @@ def state_of(
         gain=np.zeros(channels),
         lag=np.zeros(channels),
         foot_factor=np.ones(len(bodies.feet)),
+        tuning=tuning,
     )
 
 

@@ -118,6 +118,8 @@ class NominalBench:
         torque_reference: bolt torque that the stiffness belongs to [N m].
         bolt_places: of the bolts in the plane of the joint [m], shape (n_bolts, 2);
             empty if they are not stated.
+        table_sd: sd of the log frequencies of the modal table [-], and of its shapes as
+            a share of their norm [-]; zeros for an exact table.
     """
 
     stiffness: FloatArray
@@ -134,6 +136,7 @@ class NominalBench:
     tilt_sd: float
     torque_reference: float
     bolt_places: FloatArray
+    table_sd: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

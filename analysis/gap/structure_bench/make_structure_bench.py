@@ -45,7 +45,7 @@ def make_structure_bench(
     peak = np.abs(hits.response).max(axis=2)
     return StructureBench(
         campaign=campaign,
-        layout=base_layout(campaign.bodies, campaign.nominal),
+        layout=base_layout(campaign.bodies, campaign.nominal, hits.band),
         entries=entries,
         candidates=structure_candidates(entries, campaign),
         floor=STRUCTURE.coarse_floor,
@@ -64,7 +64,7 @@ def _scales(campaign: HitCampaign) -> dict[str, float]:
     """Return the sizes that scale starts and bounds of effects."""
     bodies, nominal, hits = campaign.bodies, campaign.nominal, campaign.hits
     # The rigid motions of a mass-normalised table: phi = 1 / sqrt(mass) along an axis.
-    rigid = bodies.omega < 1e-3 * bodies.omega.max()
+    rigid = bodies.omega < STRUCTURE.rigid_share * bodies.omega.max()
     motion = np.sum(bodies.points[0].rows[:, rigid] ** 2, axis=1)
     mass = 1.0 / float(np.min(motion))
     known = nominal.stiffness[np.isfinite(nominal.stiffness)]

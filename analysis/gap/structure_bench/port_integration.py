@@ -77,7 +77,7 @@ def _matrices(
     bodies: JointedBodies, state: JointState, torque: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return mass, damping and stiffness of the free modes with elastic joints."""
-    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
+    omega = state.omega(bodies)
     mass = state.mass[bodies.body]
     m = np.diag(mass)
     c = np.diag(2.0 * state.loss[bodies.body] * omega * mass)

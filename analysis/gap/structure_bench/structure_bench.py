@@ -101,6 +101,12 @@ class StructureBench:
         return ()
 
     @property
+    def table_floor(self) -> float:
+        """Error of the modal table as a share of the peak [-]."""
+        stated = STRUCTURE.shape_floor * self.campaign.nominal.table_sd[1]
+        return max(STRUCTURE.table_floor, stated)
+
+    @property
     def expanded(self) -> bool:
         """Whether hits are expanded about where they landed."""
         return bool(np.any(self.landing))

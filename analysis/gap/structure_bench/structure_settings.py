@@ -90,6 +90,22 @@ class StructureSettings:
         "error of the modal table, as a share of the peak of a record and channel",
         "exact tables: above what is left of second-order aim, which is 0.03 %",
     )
+    shape_floor: float = numerical(
+        1.0,
+        "of the sd",
+        "floor as a multiple of the stated sd of the shapes of the modal table",
+        "a response is a sum of products of shapes, each wrong by as much",
+    )
+    tuned_band: float = numerical(
+        1.3,
+        "of the band",
+        "free modes up to there have a frequency of their own where the modal table is "
+        "uncertain",
+        "modes above act by their static part, which hardly changes",
+    )
+    rigid_share: float = numerical(
+        1e-3, "of the highest", "frequency below which a free mode is a rigid motion"
+    )
     gain_sd: float = numerical(
         0.001,
         "-",
