@@ -100,10 +100,11 @@ def integrated(
     """
     n = bodies.omega.size
     omega = bodies.omega * np.sqrt(state.modulus)[bodies.body] * state.tuning
-    mass = np.diag(state.mass[bodies.body])
+    mass, ground = np.diag(state.mass[bodies.body]), np.zeros((n, n))
     for one in state.attached:
         place = one.rows(bodies)
         mass += one.mass * place.T @ place
+        ground += one.stiffness * place.T @ place
     inverse = np.linalg.inv(mass)
     stiff = state.mass[bodies.body] * omega**2
     lossy = state.mass[bodies.body] * 2 * state.loss[bodies.body] * omega
@@ -111,6 +112,8 @@ def integrated(
     k = np.repeat(state.bolt, 3) / np.tile(state.compliance, len(state.bolt))
     c = np.repeat(state.bolt, 3) * np.tile(state.damping, len(state.bolt))
     feet = bodies.feet.reshape(-1, n)
+    foot = state.foot[0] * np.repeat(state.foot_factor, 3)
+    sensors = bodies.sensors if state.sensors is None else state.sensors
     sliding = [law for law in state.laws if law.kind == LawKind.FRICTION]
     others = [law for law in state.laws if law.kind != LawKind.FRICTION]
     ports = np.array([p for law in sliding for p in law.ports], dtype=int)
@@ -136,7 +139,7 @@ def integrated(
             own = rows[list(law.ports)]
             joint[list(law.ports)] += _force(law, own @ q, own @ v)
         push = column * float(spline(t)) - joint @ rows
-        push -= (state.foot[0] * (feet @ q) + state.foot[1] * (feet @ v)) @ feet
+        push -= (foot * (feet @ q) + state.foot[1] * (feet @ v)) @ feet + ground @ q
         return np.concatenate([v, inverse @ (push - stiff * q - lossy * v)])
 
     # Sliders remember where they stuck: between two samples the motion hardly turns.
@@ -152,7 +155,7 @@ def integrated(
             memory = np.clip(memory + motion, -slips, slips) - motion
         moved.append(rates(end, y, memory)[n:])
     # A stop has a kink, whose spectrum would fold back without a filter.
-    fine_motion = bodies.sensors @ np.array(moved).T
+    fine_motion = sensors @ np.array(moved).T
     return FILTER(
         scipy.signal.resample_poly(
             fine_motion, 1, PARTS, axis=1, window=("kaiser", 10.0)

@@ -108,7 +108,7 @@ def _base_in_whole_records(
     """
     reach = STRUCTURE.final_reach
     r = make_problem(few, ()).residual(start, LONGER)
-    if float(r @ r) < STRUCTURE.near_chi2 * r.size:
+    if float(r @ r) * few.coherence < STRUCTURE.near_chi2 * r.size:
         return settled(replace(bench, reach=reach), start, (), bench.table_floor)
     x = _whole(replace(few, reach=reach), start, ()).x
     whole = replace(bench, reach=reach).at(x, (), bench.landing, bench.table_floor)
@@ -335,7 +335,7 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         fit: to be judged.
         base: fit without effects.
     """
-    dof = bench.blocks.dof
+    dof = bench.blocks.dof / bench.coherence
     chi2 = fit.chi2 / dof
     policy = bench.policy
     allowed = policy.floor_chi2

@@ -107,6 +107,18 @@ class StructureBench:
         return max(STRUCTURE.table_floor, stated)
 
     @property
+    def coherence(self) -> float:
+        """Hits over hit points where the modal table is uncertain; 1 for exact ones.
+
+        The error of a table is the same in all hits of a point, so more hits do not
+        average it out: fits give it as much weight as one hit of each point has.
+        """
+        if self.campaign.nominal.table_sd[1] == 0.0:
+            return 1.0
+        points = np.unique(self.campaign.hits.point).size
+        return len(self.campaign.hits.names) / points
+
+    @property
     def expanded(self) -> bool:
         """Whether hits are expanded about where they landed."""
         return bool(np.any(self.landing))
@@ -224,7 +236,8 @@ class StructureBench:
         model = moved.model(base, terms, None)
         rows = direction_rows(model, landing, self.direction_sd)
         peak = np.abs(self.campaign.hits.response).max(axis=2)
-        sigma = np.hypot(self.campaign.hits.noise, floor * peak)
+        known = np.hypot(self.campaign.hits.noise, floor * peak)
+        sigma = known * np.sqrt(self.coherence)
         kept = _frames_of(self.kept)
         return replace(moved, floor=floor, sigma=sigma, directions=rows, kept=kept)
 
