@@ -89,7 +89,7 @@ def place_right(
         site: as named, for example ``bolt:2``.
         places: positions by name.
     """
-    kind, _, name = site.partition(":")
+    kind, _, name = site.removesuffix(" normal").partition(":")
     if "bolt" in where:
         return None if where["bolt"] == "all" else site == f"bolt:{where['bolt']}"
     own = where.get("point", where.get("channel"))
