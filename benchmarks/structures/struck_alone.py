@@ -14,7 +14,6 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,15 +26,9 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.structures.matrices.element_assembly import Material
 from jointbench.analysis.structures.matrices.parts import MeshedBody, solid_body
 from jointbench.analysis.structures.matrices.structure import build_structure, pick
-from jointbench.analysis.structures.measured.measured_body import (
-    ModalTable,
-    modal_body,
-)
-from jointbench.analysis.structures.measured.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.measured.coupled_measurements import coupled_modes
+from jointbench.analysis.structures.measured.frf_coupling import FrfLink
 from jointbench.analysis.structures.meshes.mesh import box_mesh
-from jointbench.analysis.structures.reduction.assembled import assemble_components
-from jointbench.analysis.structures.reduction.port_joints import PortJoint
-from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from tests.judges.struck_bodies import Hammering, dense_modes, struck
 
 BAND = (60.0, 1190.0)
@@ -92,21 +85,18 @@ def one_seed(seed: int) -> dict[str, Any]:
         blocks.append(struck(body.name, modes, rows[-1], Hammering(), random))
     truth = joined(matrices, rows, spring)
 
-    def lowest(tables: Sequence[ModalTable]) -> FloatArray:
-        beam = modal_body(tables[0], {"feet": range(9), "tip": [9]})
-        block = modal_body(tables[1], {"top": range(9)})
-        joint = PortJoint("feet", ("beam", "feet"), ("block", "top"), ("xyz",))
-        whole = assemble_components([beam, block], [joint], box=(1e7, 1e10), modes=9)
-        found, _ = whole.modes(JointValues(np.array([spring]), np.zeros(1)), 10)
-        return found[found > BAND[0]][:MODES]
-
-    found, sd = with_uncertainty(lowest, blocks, BAND, draws=DRAWS)
+    links = [FrfLink(("beam", at), ("block", at), spring) for at in range(9)]
+    modes = coupled_modes(blocks, links, BAND, draws=DRAWS)
+    found = np.concatenate([modes.frequency, np.full(MODES, np.nan)])[:MODES]
+    sd = np.concatenate([modes.frequency_sd, np.full(MODES, np.nan)])[:MODES]
     return {
         "seed": seed,
         "spring": spring,
         "truth": truth.tolist(),
         "found": found.tolist(),
         "sd": sd.tolist(),
+        "modes": modes.frequency.tolist(),
+        "remarks": list(modes.remarks),
         "seconds": time.process_time() - begin,
     }
 

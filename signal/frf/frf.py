@@ -20,6 +20,7 @@ from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.frf.estimators import Estimator, bias_bound, pair_of_sums
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.innovation_noise import force_noise, innovation_noise
+from jointbench.signal.frf.record_end import RecordEnd
 from jointbench.signal.frf.spectral_sums import (
     SpectralSums,
     sum_hits,
@@ -77,6 +78,7 @@ class Frf:
             squared], same shape, or None. All outputs of an input share it.
         force_width: time after the trigger in which the force was kept [s], so that its
             noise is correlated from line to line; 0 for the whole block.
+        end: of the records, None where it is not known or not that of all hits.
     """
 
     frequency: FloatArray
@@ -93,6 +95,7 @@ class Frf:
     innovation_noise: FloatArray | None = None
     force_noise: FloatArray | None = None
     force_width: float = 0.0
+    end: RecordEnd | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -257,6 +260,7 @@ def frf_of_sums(summed: SummedHits, estimator: Estimator = Estimator.H1) -> Frf:
         innovation_noise=_whole(noise, shape),
         force_noise=_whole(forced, shape),
         force_width=window.force_width or 0.0,
+        end=sums.end,
     )
 
 

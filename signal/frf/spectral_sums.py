@@ -5,7 +5,7 @@ The spectra of hits need not be kept: see `pair_sums`.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.level_slope import LevelSlope, LevelUpdate
 from jointbench.signal.frf.pair_sums import ForceUpdate, PairSums, force_update
+from jointbench.signal.frf.record_end import RecordEnd, record_end
 from jointbench.signal.hits.hit_pairs import LabelledHits, Pair, pair_up
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
@@ -80,6 +81,7 @@ class SpectralSums:
         level_lines: of the regression on level, None where it is not asked for.
         level: of each hit on these lines [N s]; empty without them.
         hits: indices of the hits of each pair.
+        end: of the blocks, None where hits differ in it or it is not known.
     """
 
     frequency: FloatArray
@@ -94,6 +96,7 @@ class SpectralSums:
     level_lines: LevelLines | None
     level: FloatArray
     hits: tuple[IntArray, ...]
+    end: RecordEnd | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -196,11 +199,14 @@ def sum_hits(
     plan = plan_spectra(recordings)
     lines = _level_lines(plan, window) if levels else None
     adder = HitAdder.of(plan.frequency.size, lines)
+    total = np.zeros(plan.frequency.size, complex)
     for (recording, hit), labels in zip(plan.chosen, plan.labels, strict=True):
         force = force_spectrum(recording, hit, window, plan.block)
         responses = response_spectra(recording, hit, window, plan.block)
         adder.add(force, responses, labels, hit.point)
-    return _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
+        total += force
+    sums = _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
+    return replace(sums, end=record_end(plan, window, total))
 
 
 def _level_lines(plan: SpectraPlan, window: HammerWindow) -> LevelLines:

@@ -35,6 +35,8 @@ from jointbench.signal.hits.windows import (
 
 # A filtered constant still varies by this share of itself.
 _ROUNDING = 1e-12
+# A hit with fewer samples before its trigger does not cut those of the others.
+_LEAST_BEFORE = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,6 +144,7 @@ def plan_spectra(recordings: Sequence[Recording]) -> SpectraPlan:
     chosen = tuple((r, hit) for r in recordings for hit in accepted_hits(r))
     if not chosen:
         raise NoHitFound(_why_none(recordings))
+    chosen = _aligned(chosen)
     rate = _common_rate(recordings)
     block, reason = choose_block([hit.stop - hit.start for _, hit in chosen])
     labels = tuple(_labels(r) for r, _ in chosen)
@@ -156,6 +159,19 @@ def plan_spectra(recordings: Sequence[Recording]) -> SpectraPlan:
         block=block,
         block_reason=reason,
     )
+
+
+def _aligned(
+    chosen: tuple[tuple[Recording, Hit], ...],
+) -> tuple[tuple[Recording, Hit], ...]:
+    """Return the hits, all with as many samples before the trigger as the least has.
+
+    The end of the record is in the model only where blocks begin alike.
+    """
+    least = min(hit.trigger - hit.start for _, hit in chosen)
+    if least < _LEAST_BEFORE:
+        return chosen
+    return tuple((r, replace(hit, start=hit.trigger - least)) for r, hit in chosen)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -38,10 +38,9 @@ _LEAD_PULSES = 0.25
 _TAPER_POWER = 3.0 / 8.0
 # Samples before a hit that give the offset of its force, at least and at most.
 _LEAST_QUIET, _MOST_QUIET = 16, 4096
-# A response that ends above this share of its start has not decayed.
+# A response that ends above this share of its start has not decayed; an exponential
+# window brings it down to it, and the fit of modes holds what is left.
 _DECAYED = 0.03
-# Share of the response that an exponential window leaves at the end of the block.
-_LEFT_AT_END = 0.005
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +123,7 @@ def choose_window(recording: Recording) -> HammerWindow:
     )
     if left <= _DECAYED:
         return HammerWindow(width, None, lead, why + ", no exponential window")
-    rate = float(np.log(left / _LEFT_AT_END)) * recording.sample_rate / length
+    rate = float(np.log(left / _DECAYED)) * recording.sample_rate / length
     return HammerWindow(
         width, rate, lead, f"{why}, exponential window of {rate:.4g} 1/s"
     )

@@ -10,6 +10,8 @@ tried at many places beyond each edge. The likeliest is refined together with th
 and kept where the fit needs it, and then the next is tried.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, IntArray
@@ -190,9 +192,7 @@ def _starts(
         place = begin + (end - begin) * np.array(_WITHIN)
         decay = (end - begin) * np.array(_DECAYS_WITHIN)
         trials = np.append(trials, (1j * place[:, None] - decay).ravel())
-    lines = FrfLines(
-        group.lines.laplace, group.lines.response[rows], group.lines.derivatives
-    )
+    lines = replace(group.lines, response=group.lines.response[rows])
     scale = residue_scale(whole)[rows]
     found = try_poles(lines, group.variance[rows], pole, trials, scale)
     best = np.argsort(-found.log_factor)[:_STARTS]

@@ -7,6 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.record_end import EndOnLines
 
 # Lines farther apart than this many of the usual distances have a gap between them.
 _GAP_LINES = 3.0
@@ -21,11 +22,13 @@ class FrfLines:
         response: FRF, one row for each pair of output and input, shape
             (n_frf, n_lines).
         derivatives: q of the FRF's kind.
+        end: of the records, None where it does not matter or is not known.
     """
 
     laplace: ComplexArray
     response: ComplexArray
     derivatives: int
+    end: EndOnLines | None = None
 
 
 def gaps_of(lines: FrfLines) -> FloatArray:
@@ -59,4 +62,5 @@ def lines_of(frf: Frf, keep: BoolArray) -> FrfLines:
     """
     laplace = np.asarray(2j * np.pi * frf.frequency[keep] + frf.added_decay_rate)
     response = frf.response[:, :, keep].reshape(-1, laplace.size)
-    return FrfLines(laplace, response, frf.kind.derivatives)
+    end = None if frf.end is None else frf.end.on(laplace)
+    return FrfLines(laplace, response, frf.kind.derivatives, end)

@@ -80,12 +80,20 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
 
 def modal_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     """Return the columns of Re and Im of each residue, shape (n_lines, 2 n_modes)."""
-    s = lines.laplace
-    own, mirrored = (1.0 / (s[:, None] - p) for p in (pole, pole.conj()))
-    columns = np.empty((s.size, 2 * pole.size), complex)
+    own, mirrored = (_mode_columns(lines, p) for p in (pole, pole.conj()))
+    columns = np.empty((own.shape[0], 2 * pole.size), complex)
     columns[:, ::2] = own + mirrored
     columns[:, 1::2] = 1j * (own - mirrored)
-    return np.asarray(columns * (s**lines.derivatives)[:, None])
+    return columns
+
+
+def _mode_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return what a residue of 1 of each pole adds, shape (n_lines, n_modes)."""
+    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
+    if lines.end is None:
+        return np.asarray(power / (s - pole))
+    left, _ = lines.end.left(pole)
+    return np.asarray((power - pole**lines.derivatives * left) / (s - pole))
 
 
 def _residual_terms(lines: FrfLines) -> ComplexArray:
@@ -98,14 +106,17 @@ def _residual_terms(lines: FrfLines) -> ComplexArray:
         s = lines.laplace
         scale, power = np.abs(s[s.size // 2]), s**lines.derivatives
         terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
+        if lines.end is not None and lines.end.sees_offset:
+            terms.append(lines.end.offset())
         rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
         known = _ORTHONORMAL[lines] = _unstacked(np.linalg.qr(rows)[0])
     return known
 
 
-def modal_size(pole: ComplexArray) -> int:
+def modal_size(lines: FrfLines, pole: ComplexArray) -> int:
     """Return how many columns `modal_basis` has for these poles."""
-    return 2 * pole.size + len(_RESIDUAL_POWERS)
+    offset = lines.end is not None and lines.end.sees_offset
+    return 2 * pole.size + len(_RESIDUAL_POWERS) + offset
 
 
 def _unstacked(rows: FloatArray) -> ComplexArray:

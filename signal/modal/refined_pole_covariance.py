@@ -248,7 +248,7 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
     rotated and scaled by its residue, so that each FRF needs one weighted product of
     fixed columns.
     """
-    n_linear, n_poles = modal_size(pole), 2 * pole.size
+    n_linear, n_poles = modal_size(lines, pole), 2 * pole.size
     columns = np.hstack((modal_basis(lines, pole), pole_slopes(lines, pole)))
     weight = 2.0 / variance
     products = gram_matrices(columns, weight)
@@ -279,12 +279,22 @@ def _transposed(matrices: FloatArray) -> FloatArray:
 
 def pole_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     """Return d/dp of the two columns of each pole, shape (n_lines, 2 n_modes)."""
-    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
-    own, mirrored = power / (s - pole) ** 2, power / (s - pole.conj()) ** 2
+    own, mirrored = (_own_slopes(lines, p) for p in (pole, pole.conj()))
     slopes = np.empty((own.shape[0], 2 * pole.size), complex)
     slopes[:, ::2] = own + mirrored
     slopes[:, 1::2] = 1j * (own - mirrored)
     return slopes
+
+
+def _own_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return d/dp of what a residue of 1 of each pole adds; see `modal_columns`."""
+    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
+    if lines.end is None:
+        return np.asarray(power / (s - pole) ** 2)
+    left, change = lines.end.left(pole)
+    own, q = pole**lines.derivatives, lines.derivatives
+    moved = own * change + (q * pole ** (q - 1) * left if q else 0.0)
+    return np.asarray(((power - own * left) / (s - pole) - moved) / (s - pole))
 
 
 def slope_turns(residue: FloatArray) -> FloatArray:

@@ -178,7 +178,7 @@ def _responses(
     reference, weighted, times the FRFs.
     """
     basis, slopes = modal_basis(lines, pole), pole_slopes(lines, pole)
-    n_linear = modal_size(pole)
+    n_linear = modal_size(lines, pole)
     columns = np.hstack((basis, slopes))
     weight = 2.0 / variance
     products = gram_matrices(columns, weight)

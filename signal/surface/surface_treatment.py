@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Optional treatment of a surface before its fit: outliers, form, direction."""
+"""Optional treatment of a surface before its fit: outliers, form, filter, lines."""
 
 from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.surface.form_removal import mask_outliers, remove_form
+from jointbench.signal.surface.gaussian_filter import filter_waves
 from jointbench.signal.surface.quantisation_step import height_step
 from jointbench.signal.surface.structure_along import structure_along
 from jointbench.signal.surface.structure_function import (
@@ -24,32 +25,44 @@ class SurfaceTreatment:
             deviations [-]; None masks none.
         direction: of the lines of a map, from its rows towards its columns [rad];
             None for the rows.
+        short: cut-off lambda_s of a Gaussian filter [m]; None for none.
+        long: cut-off lambda_c [m]; None for none.
     """
 
     form: int | None = None
     outliers: float | None = None
     direction: float | None = None
+    short: float | None = None
+    long: float | None = None
 
     @property
     def changes_heights(self) -> bool:
         """Whether any height is masked or changed."""
-        return self.form is not None or self.outliers is not None
+        asked = (self.form, self.outliers, self.short, self.long)
+        return any(one is not None for one in asked)
+
+    @property
+    def filters(self) -> bool:
+        """Whether waves are removed."""
+        return self.short is not None or self.long is not None
 
 
 UNTREATED = SurfaceTreatment()
 
 
 def treated(surface: Surface, treatment: SurfaceTreatment) -> Surface:
-    """Mask outliers, then remove the form, each with a step in the provenance.
+    """Mask outliers, remove the form, then filter; each step is in the provenance.
 
     Raises:
-        UsageError: a degree or a limit out of range.
+        UsageError: a degree, a limit or a cut-off out of range.
         SurfaceTooSmall: too few measured points.
     """
     if treatment.outliers is not None:
         surface = mask_outliers(surface, limit=treatment.outliers)
     if treatment.form is not None:
         surface = remove_form(surface, degree=treatment.form)
+    if treatment.filters:
+        surface = filter_waves(surface, short=treatment.short, long=treatment.long)
     return surface
 
 
@@ -59,7 +72,8 @@ def treated_structure(
     """Return the treated surface and its structure function.
 
     Raises:
-        UsageError: a degree or a limit out of range, or a direction of a profile.
+        UsageError: a degree, a limit or a cut-off out of range, or a direction of a
+            profile.
         SurfaceTooSmall: too few measured points.
     """
     flat = treated(surface, treatment)
@@ -72,7 +86,7 @@ def treated_structure(
             f"surface {surface.name!r} is a profile, it has one direction; leave out "
             "--direction or give maps"
         )
-    if treatment.form is not None:
+    if treatment.form is not None or treatment.filters:
         # The instrument's quantisation steps are only in the original heights.
         step = height_step(surface.heights[surface.valid])
         estimate = replace(estimate, quantum=step)

@@ -9,9 +9,11 @@ import typer
 from jointbench.station.commands.shared_options.heights_options import (
     Direction,
     Directions,
+    Filter,
     Form,
     Outliers,
     Pool,
+    StructureMapFile,
     WaveRatio,
 )
 from jointbench.station.commands.shared_options.input_options import (
@@ -153,10 +155,12 @@ def surface_command(
     columns: Columns = None,
     form: Form = None,
     outliers: Outliers = None,
+    waves: Filter = None,
     direction: Direction = None,
     directions: Directions = False,
     pool: Pool = False,
     weierstrass: WaveRatio = None,
+    structure_map: StructureMapFile = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -168,15 +172,20 @@ def surface_command(
     Examples:
         jointbench surface surface-a.csv surface-b.csv --json surfaces.json
         jointbench surface trace.txt --columns 'x:um,z:um' --form 2 --outliers 6
+        jointbench surface a.csv b.csv c.csv --filter '2.5 um:0.8 mm' --pool
     """
     from jointbench.station.commands.surface_command import run_surface
-    from jointbench.station.pipeline.surface_options import surface_options
+    from jointbench.station.pipeline.surface_options import (
+        surface_options,
+        surface_treatment,
+    )
 
     options = surface_options(
-        (form, outliers, direction),
+        surface_treatment(form, outliers, waves, direction),
         pool=pool,
         directions=directions,
         weierstrass=weierstrass,
+        structure_map=structure_map,
     )
     run_surface(files, columns=columns, json_target=json, options=options)
 

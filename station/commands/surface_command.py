@@ -16,6 +16,7 @@ from jointbench.station.pipeline.roughness_words import (
     HEADING,
     roughness_words,
 )
+from jointbench.station.pipeline.structure_map_file import write_structure_map
 from jointbench.station.pipeline.surface_options import (
     PLAIN,
     SurfaceOptions,
@@ -28,6 +29,7 @@ from jointbench.station.pipeline.surface_stages import (
     chain_cautions,
     fit_json,
     surface_json,
+    with_remedy,
 )
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.value_text import engineering, with_sd
@@ -46,7 +48,7 @@ def run_surface(
         UsageError: an option does not apply to a surface.
         BadData: a file cannot be read, or a surface is too small.
     """
-    check_outputs(files, [json_target])
+    check_outputs(files, [json_target, options.structure_map])
     read = read_surfaces(files, columns=columns)
     given = [surface for _, surface in read]
     require_suited(given, options)
@@ -54,7 +56,9 @@ def run_surface(
     results: list[dict[str, object]] = []
     for path, surface in read:
         with working(f"fitting {surface.name}"):
-            chain = analyse_surface(surface, options)
+            chain = with_remedy(analyse_surface(surface, options), surface, options)
+        if options.structure_map is not None:
+            write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
         results.append({"file": str(path)} | surface_json(chain))
     pooled = _pooled(given, chains) if options.pool else None
@@ -82,6 +86,8 @@ def show_surfaces(
         for caution in chain_cautions(chain):
             screen.print(f"  {caution}", markup=False)
         screen.print(f"  {chain.surface.name}: {chain.fit.reason}", markup=False)
+        if chain.remedy is not None:
+            screen.print(f"  {chain.surface.name}: {chain.remedy}", markup=False)
         screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
         for line in chain.beside.lines:
             screen.print(f"  {chain.surface.name}: {line}", markup=False)

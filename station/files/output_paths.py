@@ -11,8 +11,12 @@ from jointbench.acquisition.file_access.quoting import named
 
 _HEAD_BYTES = 512
 _HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
-_TABLE_HEADS = {".csv": b"file,input_sha256,", ".parquet": b"PAR1", ".mat": b"MATLAB"}
-"""How tables of an archive begin."""
+_TABLE_HEADS: dict[str, tuple[bytes, ...]] = {
+    ".csv": (b"file,input_sha256,", b"lag_x [um],"),
+    ".parquet": (b"PAR1",),
+    ".mat": (b"MATLAB",),
+}
+"""How tables of an archive and structure maps begin."""
 
 
 def check_outputs(inputs: Sequence[Path], outputs: Sequence[Path | str | None]) -> None:

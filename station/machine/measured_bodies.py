@@ -11,7 +11,7 @@ from jointbench.analysis.structures.machine.measured_parts import (
     MeasuredPart,
 )
 from jointbench.analysis.structures.measured.coupled_measurements import frf_block
-from jointbench.analysis.structures.measured.measured_frfs import fit_frfs
+from jointbench.analysis.structures.measured.measured_frfs import fit_twice
 from jointbench.signal.frf.frf import Frf
 from jointbench.station.files.frf_files import read_frf
 from jointbench.station.machine.measured_tables import (
@@ -49,8 +49,7 @@ def measured_parts(
     found = []
     for name, one in tables.items():
         block, labels = frf_block(name, read_body(name, one, folder))
-        best, fewer = fit_frfs(block, one.band), fit_frfs(block, one.band, powers=1)
-        found.append(MeasuredPart(name, (best, fewer), labels))
+        found.append(MeasuredPart(name, fit_twice(block, one.band), labels))
     return tuple(found)
 
 

@@ -67,7 +67,10 @@ def run_measured(
         links = _links(settings, labels)
         modes = coupled_modes(blocks, links, settings.band, draws=settings.draws)
         frf = _coupled_frf(settings, blocks, links, labels)
-    console(json_target).print(table(_TITLE, _COLUMNS, _rows(modes)))
+    screen = console(json_target)
+    screen.print(table(_TITLE, _COLUMNS, _rows(modes)))
+    for remark in modes.remarks:
+        screen.print(f"Remark: {remark}")
     write_json(json_target, _json(modes, frf, settings.points))
     if report is not None:
         _write_report(report, model.name, modes, frf, settings.points)
@@ -133,6 +136,7 @@ def _json(modes: CoupledModes, frf: Frf, points: Sequence[str]) -> dict[str, Any
             }
             for at, frequency in enumerate(modes.frequency)
         ],
+        "remarks": list(modes.remarks),
         "points": list(points),
         "frequency_hz": frf.frequency.tolist(),
         "size_m_per_n": {

@@ -9,12 +9,12 @@
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field, replace
 from typing import Any, TypeVar
 
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.acquisition.records.recordings import Recording
-from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.analysis.contact.model_catalogue import contact_law_code
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.installed_effects import (
@@ -33,9 +33,12 @@ from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
-from jointbench.signal.surface.structure_function import (
-    StructureFunction,
-    structure_function,
+from jointbench.signal.surface.structure_function import StructureFunction
+from jointbench.signal.surface.surface_treatment import (
+    UNTREATED,
+    SurfaceTreatment,
+    treated,
+    treated_structure,
 )
 from jointbench.station.pipeline.joint_comparison import (
     ContactPrediction,
@@ -74,7 +77,10 @@ class Remarks:
 
 
 def surface_stages(
-    surfaces: Iterable[Surface], run: StageRun, gamma: float = DEFAULT_GAMMA
+    surfaces: Iterable[Surface],
+    run: StageRun,
+    gamma: float = DEFAULT_GAMMA,
+    treatment: SurfaceTreatment = UNTREATED,
 ) -> tuple[SurfaceChain, ...]:
     """Return the structure function and the fractal fit of each surface.
 
@@ -82,18 +88,24 @@ def surface_stages(
         surfaces: heights.
         run: store and source.
         gamma: frequency ratio of the profile that D and G belong to [-].
+        treatment: of each surface before its fit; a direction is for maps only.
     """
-    return tuple(_surface(surface, run, gamma) for surface in surfaces)
+    return tuple(_surface(one, run, gamma, treatment) for one in surfaces)
 
 
-def _surface(surface: Surface, run: StageRun, gamma: float) -> SurfaceChain:
+def _surface(
+    given: Surface, run: StageRun, gamma: float, asked: SurfaceTreatment
+) -> SurfaceChain:
     stages = run.stages
-    first = stages.key("structure", None, *run.source(surface.name, surface))
+    treatment = asked if isinstance(given, Areal) else replace(asked, direction=None)
+    surface = treated(given, treatment)
+    settings = None if treatment == UNTREATED else astuple(treatment)
+    first = stages.key("structure", settings, *run.source(given.name, given))
     structure = stages.run(
         f"structure of {surface.name}",
         first,
         StructureFunction,
-        lambda: structure_function(surface),
+        lambda: treated_structure(given, treatment)[1],
     )
     name = f"surface {surface.name}"
     key = stages.key("surface", gamma, first)

@@ -31,6 +31,7 @@ from jointbench.station.pipeline.recipe_settings import (
     chain_settings,
     hit_criteria,
     stored_hits,
+    surface_treatment_of,
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun, StageStore
@@ -190,7 +191,7 @@ def _surfaces(
     if not recipe.surface.use:
         return ()
     gamma = recipe.surface.gamma or DEFAULT_GAMMA
-    return surface_stages(session.surfaces, run, gamma)
+    return surface_stages(session.surfaces, run, gamma, surface_treatment_of(recipe))
 
 
 def _contact(

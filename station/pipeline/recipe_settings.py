@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a recipe says, as the settings that the chain takes."""
 
+import math
+
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.hits.find_hits import HitCriteria
 from jointbench.signal.hits.hit_verdicts import HitLimits
@@ -8,6 +10,7 @@ from jointbench.signal.hits.windows import WindowRequest
 from jointbench.signal.kalman.process_models import KalmanModel, KalmanSettings
 from jointbench.signal.modal.manual_selection import Choices
 from jointbench.signal.modal.modes import ModalSettings
+from jointbench.signal.surface.surface_treatment import SurfaceTreatment
 from jointbench.station.pipeline.chain import ChainSettings
 from jointbench.station.pipeline.judge_again import StoredHits
 from jointbench.station.schemas.recipe import Recipe
@@ -37,6 +40,18 @@ def chain_settings(recipe: Recipe) -> ChainSettings:
         ),
         estimator=Estimator(recipe.frf.estimator),
         window=WindowRequest(windows.force_width, windows.exponential, windows.lead),
+    )
+
+
+def surface_treatment_of(recipe: Recipe) -> SurfaceTreatment:
+    """Return the steps before the fit of surfaces; the direction is in degrees."""
+    part = recipe.surface
+    return SurfaceTreatment(
+        form=part.form,
+        outliers=part.outliers,
+        direction=None if part.direction is None else math.radians(part.direction),
+        short=part.lambda_s,
+        long=part.lambda_c,
     )
 
 

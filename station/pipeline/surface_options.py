@@ -3,10 +3,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 from jointbench.signal.fractal.weierstrass_fit import DIMENSION_RANGE, fit_weierstrass
@@ -32,12 +34,14 @@ class SurfaceOptions:
         directions: compare the directions of each map.
         weierstrass: frequency ratio of a Weierstrass-Mandelbrot profile to fit beside
             [-]; None for no such fit.
+        structure_map: file for S at all lags of one surface; None for none.
     """
 
     treatment: SurfaceTreatment = UNTREATED
     pool: bool = False
     directions: bool = False
     weierstrass: float | None = None
+    structure_map: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,19 +57,50 @@ PLAIN = SurfaceOptions()
 NOTHING_BESIDE = Beside()
 
 
+def surface_treatment(
+    form: int | None,
+    outliers: float | None,
+    waves: str | None,
+    degrees: float | None,
+) -> SurfaceTreatment:
+    """Return the treatment as typed.
+
+    Args:
+        form: degree of the polynomial [-].
+        outliers: limit in robust standard deviations [-].
+        waves: cut-offs ``"2.5 um:0.8 mm"``, either of them may be left out.
+        degrees: direction of the lines of a map [deg].
+
+    Raises:
+        UsageError: the cut-offs are not two parts.
+        UnitError: a cut-off has no unit of length.
+    """
+    short, long = (None, None) if waves is None else _cutoffs(waves)
+    radians = None if degrees is None else float(np.radians(degrees))
+    return SurfaceTreatment(form, outliers, radians, short, long)
+
+
+def _cutoffs(text: str) -> tuple[float | None, float | None]:
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) != 2 or not any(parts):
+        raise UsageError(
+            f"--filter is {text!r}; give lambda_s and lambda_c, for example "
+            "'2.5 um:0.8 mm', '2.5 um:' or ':0.8 mm'"
+        )
+    short, long = (parse_value(part, "length") if part else None for part in parts)
+    return short, long
+
+
 def surface_options(
-    treatment: tuple[int | None, float | None, float | None],
+    treatment: SurfaceTreatment,
     *,
     pool: bool,
     directions: bool,
     weierstrass: float | None,
+    structure_map: Path | None = None,
 ) -> SurfaceOptions:
-    """Return the options as typed: form, outliers and a direction in degrees."""
-    form, outliers, degrees = treatment
-    radians = None if degrees is None else float(np.radians(degrees))
-    return SurfaceOptions(
-        SurfaceTreatment(form, outliers, radians), pool, directions, weierstrass
-    )
+    """Return the options as typed."""
+    return SurfaceOptions(treatment, pool, directions, weierstrass, structure_map)
 
 
 def require_suited(surfaces: Sequence[Surface], options: SurfaceOptions) -> None:
@@ -78,6 +113,11 @@ def require_suited(surfaces: Sequence[Surface], options: SurfaceOptions) -> None
         "--pool": options.pool,
         "--weierstrass": options.weierstrass is not None,
     }
+    if options.structure_map is not None and len(surfaces) > 1:
+        raise UsageError(
+            f"--structure-map takes one surface, {len(surfaces)} are given; run the "
+            "command for each"
+        )
     for option in (name for name, asked in of_maps.items() if asked):
         _require_all(surfaces, Areal, option, "map")
     for option in (name for name, asked in of_profiles.items() if asked):
@@ -133,7 +173,19 @@ def _said(done: Step, surface: Surface) -> str:
     if done.name == "remove_form":
         taken = engineering(float(detail["rms_taken_m"]), "m")
         return f"form of degree {detail['degree']} removed, {taken} rms"
+    if done.name == "gaussian_filter":
+        return _filtered(float(detail["short_m"]), float(detail["long_m"]), done)
     return ""
+
+
+def _filtered(short: float, long: float, done: Step) -> str:
+    said = [
+        f"{word} than {engineering(cutoff, 'm')}"
+        for word, cutoff in (("shorter", short), ("longer", long))
+        if cutoff > 0
+    ]
+    ends = dict(done.detail)["ends"]
+    return f"waves {' and '.join(said)} filtered out, {ends} points cut off at each end"
 
 
 def _direction(estimate: StructureFunction) -> Beside:

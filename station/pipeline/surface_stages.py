@@ -2,12 +2,14 @@
 """``jointbench surface``: structure function and fractal parameters of surfaces."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.verdict_records import FractalFit
+from jointbench.signal.surface.levelling import level
+from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.signal.surface.structure_function import StructureFunction
 from jointbench.signal.surface.surface_treatment import treated_structure
 from jointbench.station.pipeline.roughness_words import (
@@ -21,16 +23,27 @@ from jointbench.station.pipeline.surface_options import (
     SurfaceOptions,
     beside_the_fit,
 )
+from jointbench.station.pipeline.surface_remedies import remedy
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceChain:
-    """A surface, its structure function and what it says."""
+    """A surface, its structure function and what it says.
+
+    Attributes:
+        surface: treated as asked.
+        structure: its structure function.
+        fit: D and G, or the reason for none.
+        beside: what options ask in addition.
+        remedy: what would give the surface a scaling range; None where it has one, or
+            where none was looked for.
+    """
 
     surface: Surface
     structure: StructureFunction
     fit: FractalFit
     beside: Beside = NOTHING_BESIDE
+    remedy: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +64,15 @@ def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> Surfac
     """
     flat, structure = treated_structure(surface, options.treatment)
     beside = beside_the_fit(flat, structure, options)
-    return SurfaceChain(flat, structure, fit_fractal(structure), beside)
+    fit = fit_fractal(structure)
+    return SurfaceChain(flat, structure, fit, beside)
+
+
+def with_remedy(
+    chain: SurfaceChain, given: Surface, asked: SurfaceOptions
+) -> SurfaceChain:
+    """Return a chain that names what would help a surface without a scaling range."""
+    return replace(chain, remedy=remedy(given, chain.fit, asked.treatment))
 
 
 def chain_cautions(chain: SurfaceChain) -> tuple[str, ...]:
@@ -64,6 +85,8 @@ def surface_json(chain: SurfaceChain) -> dict[str, object]:
     said = cautions(chain.surface.provenance)
     return {
         **fit_json(chain.surface.name, chain.fit, said),
+        "remedy": chain.remedy,
+        "spectrum": spectrum_json(chain.surface),
         **dict(chain.beside.keys),
     }
 
@@ -93,4 +116,16 @@ def fit_json(name: str, fit: FractalFit, said: Sequence[str]) -> dict[str, objec
             "sd": fit.local_slope.sd.tolist(),
         },
         "provenance": [{"step": s.name, **dict(s.detail)} for s in fit.provenance],
+    }
+
+
+def spectrum_json(surface: Surface) -> dict[str, object] | None:
+    """Return the power spectral density along the lines of a surface as plain data."""
+    found = line_spectrum(level(surface))
+    if found is None:
+        return None
+    return {
+        "wavelength_m": (1 / found.frequency).tolist(),
+        "density_m3": found.density.tolist(),
+        "ordinates": found.count.tolist(),
     }

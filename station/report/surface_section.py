@@ -6,6 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.records.surfaces import Areal, Profile
+from jointbench.signal.surface.levelling import level
+from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.station.pipeline.roughness_words import HEADING, roughness_words
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
 from jointbench.station.screen.figures import axis, figure
@@ -30,7 +32,8 @@ BAD = frozenset({"no scaling range", "instrument-limited"})
 def surface_section(chains: Sequence[SurfaceChain]) -> Section:
     """Return the section: heights of each surface, then all structure functions."""
     items: list[Item] = [_heights(chain, n) for n, chain in enumerate(chains)]
-    items += [_structure_plot(chains), _slope_plot(chains), _table(chains)]
+    items += [_structure_plot(chains), _spectrum_plot(chains)]
+    items += [_slope_plot(chains), _table(chains)]
     items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
     items += [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
     return Section("surfaces", "Surfaces", tuple(items))
@@ -113,6 +116,27 @@ def _structure_plot(chains: Sequence[SurfaceChain]) -> Plot:
         "instrument (line) and without the instrument (dotted)."
     )
     return Plot("structure-plot", caption, plot, 420)
+
+
+def _spectrum_plot(chains: Sequence[SurfaceChain]) -> Plot:
+    traces = []
+    for number, chain in enumerate(chains):
+        found = line_spectrum(level(chain.surface))
+        if found is not None:
+            color = PALETTE[number % len(PALETTE)]
+            density = 1e18 * found.density
+            name = chain.surface.name
+            traces.append(line(1e6 / found.frequency, density, name, color=color))
+    plot = figure(
+        traces,
+        axis("wavelength [µm]", log=True),
+        axis("power spectral density [µm³]", log=True),
+    )
+    caption = (
+        "Power spectral density along the lines, one-sided over 1 / wavelength: its "
+        "integral is the variance of the heights."
+    )
+    return Plot("spectrum-plot", caption, plot, 300)
 
 
 def _slope_plot(chains: Sequence[SurfaceChain]) -> Plot:

@@ -14,6 +14,8 @@ from typing import Annotated, Any
 from pydantic import (
     AfterValidator,
     Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
     model_validator,
 )
 
@@ -28,12 +30,13 @@ from jointbench.analysis.gap.catalogue.installed_effects import (
     effect_code,
     installed_catalogue,
 )
+from jointbench.signal.surface.form_removal import HIGHEST_DEGREE
 from jointbench.station.files.toml_file import (
     StrictTable,
     read_toml,
 )
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.schemas.positive_quantities import Force, Pressure
+from jointbench.station.schemas.positive_quantities import Force, Length, Pressure
 from jointbench.station.schemas.recipe_modal_parts import (
     FrfPart,
     HitsPart,
@@ -58,10 +61,25 @@ _FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
 
 
 class SurfacePart(StrictTable):
-    """Whether surfaces are fitted, and with which frequency ratio gamma."""
+    """Whether surfaces are fitted, with which frequency ratio and after which steps.
+
+    The steps are those of `SurfaceTreatment`; the direction holds for maps.
+    """
 
     use: bool = True
     gamma: Annotated[float, Field(gt=1)] | None = None
+    form: Annotated[int, Field(ge=1, le=HIGHEST_DEGREE)] | None = None
+    outliers: Annotated[float, Field(gt=1)] | None = None
+    lambda_s: Length | None = None
+    lambda_c: Length | None = None
+    direction: Annotated[float, Field(ge=-180, le=180)] | None = None
+
+    @model_serializer(mode="wrap")
+    def _only_steps_taken(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out steps that are not taken: results of older recipes keep keys."""
+        content: dict[str, Any] = whole(self)
+        always = ("use", "gamma")
+        return {k: v for k, v in content.items() if k in always or v is not None}
 
 
 class ContactPart(StrictTable):

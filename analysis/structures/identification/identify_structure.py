@@ -17,10 +17,7 @@ from jointbench.analysis.structures.identification.joint_result import (
     StateFit,
     StructureIdentification,
 )
-from jointbench.analysis.structures.identification.multistart import (
-    LARGEST_LOG_SD,
-    find_optima,
-)
+from jointbench.analysis.structures.identification.multistart import find_optima
 from jointbench.analysis.structures.identification.next_measurement import (
     what_separates,
     what_to_measure,
@@ -36,6 +33,9 @@ from jointbench.analysis.structures.identification.sensor_masses import (
     SensorMasses,
     is_mass,
     structure_with_masses,
+)
+from jointbench.analysis.structures.identification.solution_branches import (
+    LARGEST_LOG_SD,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.identification.multistart import (
+from jointbench.analysis.structures.identification.descent import descend, with_value
+from jointbench.analysis.structures.identification.solution_branches import (
     LARGEST_LOG_SD,
-    descend,
-    with_value,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,

@@ -4,8 +4,8 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.structures.identification.descent import descend
 from jointbench.analysis.structures.identification.joint_result import LikelihoodProfile
-from jointbench.analysis.structures.identification.multistart import descend
 from jointbench.analysis.structures.identification.parameter_intervals import LEVEL
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.structures.measured.fitted_frfs import FittedFrfs
 from jointbench.analysis.structures.measured.measured_body import modal_body
-from jointbench.analysis.structures.measured.measured_frfs import FittedFrfs
 from jointbench.analysis.structures.reduction.component import (
     BodySource,
     Component,
@@ -27,7 +27,7 @@ class MeasuredPart:
     Attributes:
         name: of the body.
         fits: of its FRFs: the best description of the modes above the band, and one
-            with a power less, whose difference is part of the uncertainty.
+            with a further power, whose difference is part of the uncertainty.
         labels: of its points.
     """
 

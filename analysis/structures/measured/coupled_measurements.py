@@ -6,14 +6,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData, ChannelMissing
-from jointbench.analysis.structures.measured.frf_coupling import FrfBlock, FrfLink
+from jointbench.analysis.structures.measured.coupled_roots import (
+    GapMatrix,
+    poles_near,
+)
+from jointbench.analysis.structures.measured.fitted_frfs import FittedFrfs
+from jointbench.analysis.structures.measured.frf_coupling import (
+    FrfBlock,
+    FrfLink,
+    link_rows,
+)
 from jointbench.analysis.structures.measured.measured_body import (
     ModalTable,
     modal_body,
 )
-from jointbench.analysis.structures.measured.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.measured.measured_frfs import fit_twice
 from jointbench.analysis.structures.reduction.assembled import assemble_components
 from jointbench.analysis.structures.reduction.component import BodySource
 from jointbench.analysis.structures.reduction.port_joints import PortJoint
@@ -23,6 +32,14 @@ from jointbench.signal.frf.frf import Frf
 # Modes beyond those of the bodies that the assembly is asked for.
 _SPARE = 8
 _BOX = (1e3, 1e12)
+# Poles that start outside of the band by this factor may end in it.
+_AROUND = 1.15
+# Poles that agree to this are one.
+_SAME = 1e-7
+# Least ratio of imaginary part to size of an oscillating pole.
+_SWINGS = 0.02
+# A mode is remarked on if its 95 % interval exceeds this share of its frequency.
+_WIDE, _HARDLY = 1.96, 5e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,12 +51,14 @@ class CoupledModes:
         frequency_sd: from noise, and from the modes above the band [Hz].
         damping_ratio: [-], same shape.
         damping_sd: [-], same shape.
+        remarks: modes that the FRFs hardly determine, and why.
     """
 
     frequency: FloatArray
     frequency_sd: FloatArray
     damping_ratio: FloatArray
     damping_sd: FloatArray
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -101,38 +120,91 @@ def coupled_modes(
         seed: of the draws.
 
     Returns:
-        Oscillating modes within the band, with standard deviations.
+        Oscillating modes within the band, with standard deviations: those of the draws,
+        and the change with a further power for the modes above the band.
 
     Raises:
         BadData: there is none, or a fit fails.
     """
-    nominal = [0]
+    fits = [fit_twice(one, band) for one in blocks]
+    best = [one for one, _ in fits]
+    ties = link_rows(blocks, links)
 
-    def modes(tables: Sequence[ModalTable]) -> FloatArray:
-        found = _modes_of(tables, links, band)
-        count = nominal[0] or found.shape[1]
-        nominal[0] = count
-        # A draw may move the last mode out of the band.
-        wide = np.full((2, count), np.nan)
-        wide[:, : min(count, found.shape[1])] = found[:, :count]
-        return wide
+    def gap(some: Sequence[FittedFrfs]) -> GapMatrix:
+        return GapMatrix(
+            tuple(one.response() for one in some),
+            ties,
+            np.array([one.stiffness for one in links], float),
+            np.array([one.damping for one in links], float),
+        )
 
-    value, sd = with_uncertainty(modes, blocks, band, draws=draws, seed=seed)
-    kept = np.isfinite(value).all(axis=0) & np.isfinite(sd).all(axis=0)
-    if not kept.any():
+    starts = _starts([one.table() for one in best], links, band)
+    poles = _within(_distinct(poles_near(gap(best), starts)), band)
+    if not poles.size:
         raise BadData(
             f"the coupled bodies have no mode from {band[0]:g} to {band[1]:g} Hz; "
             "widen the band of the measurement"
         )
-    return CoupledModes(value[0, kept], sd[0, kept], value[1, kept], sd[1, kept])
+    apart = _numbers(poles_near(gap([one for _, one in fits]), poles)) - _numbers(poles)
+    random = np.random.default_rng(seed)
+    drawn = np.array(
+        [
+            _numbers(poles_near(gap([one.drawn(random) for one in best]), poles))
+            for _ in range(draws)
+        ]
+    )
+    noise = np.nanstd(drawn, axis=0, ddof=1)
+    sd = np.hypot(noise, np.where(np.isfinite(apart), apart, np.inf))
+    frequency, ratio = _numbers(poles)
+    return CoupledModes(frequency, sd[0], ratio, sd[1], _remarks(frequency, noise, sd))
 
 
-def _modes_of(
+def _numbers(poles: ComplexArray) -> FloatArray:
+    """Return frequencies [Hz] and damping ratios [-], shape (2, n)."""
+    size = np.abs(poles)
+    return np.stack([size / (2.0 * np.pi), -poles.real / size])
+
+
+def _distinct(poles: ComplexArray) -> ComplexArray:
+    """Return the poles that were found, each once, the lowest first."""
+    found = poles[np.isfinite(poles)]
+    found = found[np.argsort(np.abs(found))]
+    apart = np.abs(np.diff(found)) > _SAME * np.abs(found[1:])
+    return np.asarray(found[np.append(True, apart)]) if found.size else found
+
+
+def _within(poles: ComplexArray, band: tuple[float, float]) -> ComplexArray:
+    """Return the oscillating poles within a band [Hz]."""
+    frequency = np.abs(poles) / (2.0 * np.pi)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    return np.asarray(poles[inside & (poles.imag > _SWINGS * np.abs(poles))])
+
+
+def _remarks(
+    frequency: FloatArray, noise: FloatArray, sd: FloatArray
+) -> tuple[str, ...]:
+    """Return what limits modes that the FRFs hardly determine."""
+    found = []
+    for at in np.flatnonzero(_WIDE * sd[0] > _HARDLY * frequency):
+        cause = (
+            "noise of the FRFs; average more hits"
+            if noise[0, at] > 0.5 * sd[0, at]
+            else "the modes above the band; measure to a higher frequency"
+        )
+        found.append(
+            f"mode {at + 1} at {frequency[at]:.4g} Hz is known within "
+            f"{100 * _WIDE * sd[0, at] / frequency[at]:.2g} % (95 %): the limit is "
+            f"{cause}"
+        )
+    return tuple(found)
+
+
+def _starts(
     tables: Sequence[ModalTable],
     links: Sequence[FrfLink],
     band: tuple[float, float],
-) -> FloatArray:
-    """Return frequencies and damping ratios within the band, shape (2, n)."""
+) -> list[complex]:
+    """Return poles of the bodies' modes joined by the links, in and around the band."""
     bodies = [
         modal_body(
             one,
@@ -158,12 +230,7 @@ def _modes_of(
         np.array([one.stiffness for one in links], float),
         np.array([one.damping for one in links], float),
     )
-    found = whole.complex_modes(values)
-    frequency = found.natural_frequency
-    inside = (
-        (frequency >= band[0])
-        & (frequency <= band[1])
-        & np.logical_not(found.overdamped)
-    )
-    order = np.flatnonzero(inside)[np.argsort(frequency[inside])]
-    return np.stack([frequency[order], found.damping_ratio[order]])
+    pole = whole.complex_modes(values).pole
+    size = np.abs(pole) / (2.0 * np.pi)
+    near = (size > band[0] / _AROUND) & (size < band[1] * _AROUND)
+    return [complex(one) for one in pole[near & (pole.imag > 0.0)]]

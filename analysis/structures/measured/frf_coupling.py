@@ -91,27 +91,16 @@ def couple_frfs(
     frequency = blocks[0].frequency
     if any(not np.array_equal(one.frequency, frequency) for one in blocks):
         raise BadData("the FRFs of the bodies have different lines; use one resolution")
-    start = dict(
-        zip(
-            [one.name for one in blocks],
-            np.cumsum([0] + [one.receptance.shape[0] for one in blocks]).tolist(),
-            strict=False,
-        )
-    )
     whole = _block_diagonal([one.receptance for one in blocks])
     variance = _block_diagonal([one.variance for one in blocks]).real
     size = whole.shape[1]
-    ties = np.zeros((len(links), size))
-    for row, link in enumerate(links):
-        ties[row, _place(blocks, start, link.first)] += 1.0
-        if link.second is not None:
-            ties[row, _place(blocks, start, link.second)] -= 1.0
+    ties = link_rows(blocks, links)
     laplace = 2j * np.pi * frequency
     impedance = [np.asarray(one.stiffness + laplace * one.damping) for one in links]
     soft = np.zeros((frequency.size, len(links)), complex)
     for row, one in enumerate(impedance):
         soft[:, row] = 1.0 / one
-    kept = [_place(blocks, start, one) for one in points]
+    kept = [_place(blocks, one) for one in points]
     gap = ties @ whole @ ties.T + soft[:, :, None] * np.eye(len(links))
     # What a change of any FRF of a body does: left' dH right, with one factor each.
     moved = np.linalg.solve(gap, ties @ whole)
@@ -132,6 +121,27 @@ def couple_frfs(
     )
 
 
+def link_rows(blocks: Sequence[FrfBlock], links: Sequence[FrfLink]) -> FloatArray:
+    """Return the relative motion of links from the points of all blocks.
+
+    Args:
+        blocks: in the order of the points.
+        links: connections.
+
+    Returns:
+        Shape (n_links, n_points).
+
+    Raises:
+        UsageError: there is no such body or point.
+    """
+    ties = np.zeros((len(links), sum(one.receptance.shape[0] for one in blocks)))
+    for row, link in enumerate(links):
+        ties[row, _place(blocks, link.first)] += 1.0
+        if link.second is not None:
+            ties[row, _place(blocks, link.second)] -= 1.0
+    return ties
+
+
 def _block_diagonal(parts: Sequence[ComplexArray | FloatArray]) -> ComplexArray:
     """Return line-first block diagonal matrices, shape (n_lines, n, n)."""
     size = sum(one.shape[0] for one in parts)
@@ -144,13 +154,14 @@ def _block_diagonal(parts: Sequence[ComplexArray | FloatArray]) -> ComplexArray:
     return whole
 
 
-def _place(
-    blocks: Sequence[FrfBlock], start: dict[str, int], point: tuple[str, int]
-) -> int:
+def _place(blocks: Sequence[FrfBlock], point: tuple[str, int]) -> int:
     name, number = point
-    if name not in start:
-        raise UsageError(f"no body {name!r}; the blocks are {list(start)}")
-    count = next(one.receptance.shape[0] for one in blocks if one.name == name)
-    if not 0 <= number < count:
-        raise UsageError(f"{name!r} has points 0 to {count - 1}, not {number}")
-    return start[name] + number
+    begin = 0
+    for one in blocks:
+        count = one.receptance.shape[0]
+        if one.name == name:
+            if not 0 <= number < count:
+                raise UsageError(f"{name!r} has points 0 to {count - 1}, not {number}")
+            return begin + number
+        begin += count
+    raise UsageError(f"no body {name!r}; the blocks are {[b.name for b in blocks]}")

@@ -2,118 +2,45 @@
 """A body from its FRFs measured free-free: rigid motions, modes and the rest above."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import qr, solve_triangular
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
+from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import BadData, NoModeFound
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
+from jointbench.analysis.structures.measured.fitted_frfs import FittedFrfs
 from jointbench.analysis.structures.measured.frf_coupling import FrfBlock
-from jointbench.analysis.structures.measured.measured_body import ModalTable
 from jointbench.analysis.structures.measured.mode_above import mode_above
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
-# A rigid motion counts if it exceeds its noise by this factor.
-_ABOVE_NOISE = 3.0
-_MOST_RIGID = 6
 _REFERENCES = 2
-# Powers of s^2 that describe the modes above the band.
-_POWERS = 2
+# Lowest and highest last power of s that describes the modes above the band.
+_POWERS, _MOST_POWERS = 4, 12
+# A power is needed if noise gains as much with a smaller probability.
+_CHANCE = 0.05
+# Further powers of the second fit: an odd and an even one.
+_FURTHER = 2
 # Lines needed for each unknown of an FRF.
 _LINES_EACH = 4
 # Damping ratio of a mode above the band of a body without modes in it.
 _DAMPING = 0.005
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FittedFrfs:
-    """Real coefficients of all FRFs of a body.
+def fit_frfs(block: FrfBlock, band: tuple[float, float]) -> FittedFrfs:
+    """Fit modes, rigid motions and the response of the modes above the band to FRFs.
 
-    H(s) = rigid / s^2 + sum over modes residue / (s^2 + 2 z w s + w^2) + flexibility +
-    curvature s^2.
-
-    Attributes:
-        name: of the body.
-        frequency: of the elastic modes [Hz], shape (n_modes,).
-        frequency_sd: [Hz], shape (n_modes,).
-        damping_ratio: [-], shape (n_modes,).
-        damping_sd: [-], shape (n_modes,).
-        terms: rigid [1/kg], residues [1/kg], flexibility [m/N], curvature [m s^2/N],
-            shape (n_modes + 3, n_points, n_points), symmetric.
-        terms_sd: of each, same shape.
-        band_hz: highest frequency of the fit [Hz].
-    """
-
-    name: str
-    frequency: FloatArray
-    frequency_sd: FloatArray
-    damping_ratio: FloatArray
-    damping_sd: FloatArray
-    terms: FloatArray
-    terms_sd: FloatArray
-    band_hz: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze(self, *(one for one in self.__slots__ if one not in ("name", "band_hz")))
-
-    def table(self) -> ModalTable:
-        """Return modes of rank one, rigid motions and a positive flexibility."""
-        count = self.frequency.size
-        rigid, flexibility = self.terms[0], self.terms[-2]
-        shapes = [_leading(one) for one in self.terms[1 : count + 1]]
-        spread = [_shape_sd(one) for one in self.terms_sd[1 : count + 1]]
-        points = rigid.shape[0]
-        value, vector = np.linalg.eigh(flexibility)
-        positive = (vector * np.maximum(value, 0.0)) @ vector.T
-        none = np.zeros((0, points))
-        return ModalTable(
-            self.name,
-            self.frequency,
-            self.frequency_sd,
-            self.damping_ratio,
-            self.damping_sd,
-            np.array(shapes).reshape(count, points),
-            np.array(spread).reshape(count, points),
-            np.concatenate([none, _rigid_rows(rigid, self.terms_sd[0])]),
-            positive,
-            -self.terms[-1],
-            self.band_hz,
-        )
-
-    def drawn(self, random: np.random.Generator) -> "FittedFrfs":
-        """Return coefficients drawn from their uncertainty."""
-        noise = random.standard_normal(self.terms.shape)
-        noise = (noise + np.swapaxes(noise, 1, 2)) / np.sqrt(2.0)
-        at = np.arange(noise.shape[1])
-        noise[:, at, at] /= np.sqrt(2.0)
-        shift = random.standard_normal((2, self.frequency.size))
-        return replace(
-            self,
-            frequency=np.sort(self.frequency + self.frequency_sd * shift[0]),
-            damping_ratio=np.maximum(
-                self.damping_ratio + self.damping_sd * shift[1], 0.0
-            ),
-            terms=self.terms + self.terms_sd * noise,
-        )
-
-
-def fit_frfs(
-    block: FrfBlock, band: tuple[float, float], *, powers: int = _POWERS
-) -> FittedFrfs:
-    """Fit modes, rigid motions and the flexibility above the band to FRFs.
-
-    A mode just above the band is one of the modes, where the FRFs need it.
+    A mode just above the band is one of the modes, where the FRFs need it; powers of s
+    describe the others, as many as the FRFs show.
 
     Args:
         block: FRFs of a free body between all of its points.
         band: lowest and highest frequency of the fit [Hz]; above the suspension.
-        powers: of s^2 in the response of the modes above the band, at least 1.
 
     Returns:
-        Coefficients with standard deviations.
+        Coefficients with their covariance.
 
     Raises:
         BadData: the band holds too few lines.
@@ -121,51 +48,118 @@ def fit_frfs(
     Source:
         Ewins, Modal Testing (2000), sec. 4.4 (residual terms of a linear fit).
     """
+    return fit_twice(block, band)[0]
+
+
+def fit_twice(
+    block: FrfBlock, band: tuple[float, float]
+) -> tuple[FittedFrfs, FittedFrfs]:
+    """Fit FRFs as `fit_frfs`, and once more with two further powers.
+
+    The difference shows how well the modes above the band are described.
+    """
     keep = (block.frequency >= band[0]) & (block.frequency <= band[1])
-    frequency, frequency_sd, ratio, ratio_sd = _with_mode_above(
-        block, band, _poles(block, band)
-    )
-    unknowns = frequency.size + 2 + powers
-    if np.count_nonzero(keep) < _LINES_EACH * unknowns:
+    poles = _with_mode_above(block, band, _poles(block, band))
+    fixed = poles[0].size + 2
+    room = np.count_nonzero(keep) // _LINES_EACH - fixed
+    if room < _POWERS + _FURTHER:
         raise BadData(
             f"{np.count_nonzero(keep)} lines of {block.name!r} from {band[0]:g} to "
-            f"{band[1]:g} Hz for {unknowns} unknowns; widen the band"
+            f"{band[1]:g} Hz for {fixed + _POWERS + _FURTHER} unknowns; widen the band"
         )
-    laplace = 2j * np.pi * block.frequency[keep]
-    omega = 2.0 * np.pi * frequency
-    columns = [
-        laplace**-2,
-        *(
-            1.0 / (laplace**2 + 2 * z * w * laplace + w**2)
-            for z, w in zip(ratio, omega, strict=True)
-        ),
-        np.ones_like(laplace),
-        *(laplace ** (2 * power) for power in range(1, powers + 1)),
+    powers = min(room, _MOST_POWERS + _FURTHER)
+    laplace = np.asarray(2j * np.pi * block.frequency[keep], complex)
+    basis = _basis(laplace, poles[0], poles[2], powers)
+    count = block.receptance.shape[0]
+    pairs = [(i, j) for i in range(count) for j in range(i, count)]
+    solved = [_solved(basis, block, keep, pair) for pair in pairs]
+    used = _needed(solved, fixed + _POWERS, fixed + powers - _FURTHER)
+
+    def fitted(columns: int) -> FittedFrfs:
+        terms = np.zeros((columns, count, count))
+        roots = np.zeros((count, count, columns, columns))
+        for (i, j), one in zip(pairs, solved, strict=True):
+            terms[:, i, j], roots[i, j] = one.leading(columns)
+            terms[:, j, i], roots[j, i] = terms[:, i, j], roots[i, j]
+        return FittedFrfs(block.name, *poles, terms, roots, band[1])
+
+    return fitted(used), fitted(used + _FURTHER)
+
+
+def _basis(
+    laplace: ComplexArray, frequency: FloatArray, ratio: FloatArray, powers: int
+) -> ComplexArray:
+    """Return rigid motions, modes and powers as columns."""
+    columns = [_power(-2)]
+    columns += [
+        _pole(w, z)
+        for w, z in zip((2.0 * np.pi * frequency).tolist(), ratio.tolist(), strict=True)
     ]
-    basis = np.array(columns).T
-    count, kept = block.receptance.shape[0], frequency.size + 3
-    terms = np.zeros((unknowns, count, count))
-    spread = np.zeros_like(terms)
-    for i in range(count):
-        for j in range(i, count):
-            both = [(i, j)] if i == j else [(i, j), (j, i)]
-            value, sd = _weighted(
-                np.concatenate([basis] * len(both)),
-                np.concatenate([block.receptance[a, b, keep] for a, b in both]),
-                np.concatenate([block.variance[a, b, keep] for a, b in both]),
-            )
-            terms[:, i, j] = terms[:, j, i] = value
-            spread[:, i, j] = spread[:, j, i] = sd
-    return FittedFrfs(
-        block.name,
-        frequency,
-        frequency_sd,
-        ratio,
-        ratio_sd,
-        terms[:kept],
-        spread[:kept],
-        band[1],
-    )
+    columns += [_power(power) for power in range(powers + 1)]
+    return np.array([one(laplace) for one in columns]).T
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Solved:
+    """A weighted fit of one FRF for any number of leading columns.
+
+    Attributes:
+        factor: triangular, of the scaled columns, shape (n, n).
+        scale: of the columns, shape (n,).
+        along: part of the FRF along each orthonormal column, shape (n,).
+        left: sum of squares outside of all columns [-].
+        freedom: of `left`.
+    """
+
+    factor: FloatArray
+    scale: FloatArray
+    along: FloatArray
+    left: float
+    freedom: int
+
+    @property
+    def noise(self) -> float:
+        """Sum of squares over its degrees of freedom, at least 1."""
+        return max(1.0, self.left / max(self.freedom, 1))
+
+    def leading(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Return real coefficients of leading columns, and a root of their covariance.
+
+        Columns that are left out are part of the noise.
+        """
+        left = self.left + float(self.along[count:] @ self.along[count:])
+        freedom = self.freedom + self.along.size - count
+        noise = max(1.0, left / max(freedom, 1))
+        inverse = solve_triangular(self.factor[:count, :count], np.eye(count))
+        inverse = inverse / self.scale[:count, None]
+        return inverse @ self.along[:count], np.sqrt(noise) * inverse
+
+
+def _solved(
+    basis: ComplexArray, block: FrfBlock, keep: BoolArray, pair: tuple[int, int]
+) -> _Solved:
+    """Fit an FRF and its reciprocal one."""
+    i, j = pair
+    both = [(i, j)] if i == j else [(i, j), (j, i)]
+    response = np.concatenate([block.receptance[a, b, keep] for a, b in both])
+    variance = np.concatenate([block.variance[a, b, keep] for a, b in both])
+    weight = 1.0 / np.sqrt(0.5 * variance)
+    scaled = np.concatenate([basis] * len(both)) * weight[:, None]
+    rows = np.concatenate([scaled.real, scaled.imag])
+    wanted = np.concatenate([response.real * weight, response.imag * weight])
+    scale = np.linalg.norm(rows, axis=0)
+    space, factor = np.linalg.qr(rows / scale)
+    along = space.T @ wanted
+    left = max(float(wanted @ wanted - along @ along), 0.0)
+    return _Solved(factor, scale, along, left, wanted.size - along.size)
+
+
+def _needed(solved: Sequence[_Solved], least: int, most: int) -> int:
+    """Return the number of columns that the FRFs need together."""
+    limit = chi2_limit(_CHANCE, len(solved))
+    gain = sum(one.along**2 / one.noise for one in solved)
+    needed = np.flatnonzero(np.asarray(gain)[least:most] > limit)
+    return least + (int(needed[-1]) + 1 if needed.size else 0)
 
 
 def _poles(
@@ -204,7 +198,7 @@ def _with_mode_above(
     """Append a mode just above the band where the FRFs need one."""
     frequency, frequency_sd, ratio, ratio_sd = poles
     damping = float(np.median(ratio)) if ratio.size else _DAMPING
-    columns = [_power(power) for power in range(-1, _POWERS + 1)]
+    columns = [_power(power) for power in (-2, *range(_POWERS + 1))]
     columns += [
         _pole(w, z)
         for w, z in zip((2.0 * np.pi * frequency).tolist(), ratio.tolist(), strict=True)
@@ -221,75 +215,8 @@ def _with_mode_above(
 
 
 def _power(power: int) -> Callable[[ComplexArray], ComplexArray]:
-    return lambda s: np.asarray(s ** (2 * power))
+    return lambda s: np.asarray(s**power)
 
 
 def _pole(omega: float, ratio: float) -> Callable[[ComplexArray], ComplexArray]:
     return lambda s: np.asarray(1.0 / (s**2 + 2.0 * ratio * omega * s + omega**2))
-
-
-def _weighted(
-    basis: np.ndarray, response: np.ndarray, variance: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return real coefficients of a weighted fit, and their standard deviations."""
-    weight = 1.0 / np.sqrt(0.5 * variance)
-    rows = np.concatenate([basis.real * weight[:, None], basis.imag * weight[:, None]])
-    wanted = np.concatenate([response.real * weight, response.imag * weight])
-    scale = np.linalg.norm(rows, axis=0)
-    value, _, _, _ = np.linalg.lstsq(rows / scale, wanted, rcond=None)
-    left = wanted - rows / scale @ value
-    freedom = max(wanted.size - value.size, 1)
-    noise = max(1.0, float(left @ left) / freedom)
-    inverse = np.linalg.inv((rows / scale).T @ (rows / scale))
-    return value / scale, np.sqrt(noise * np.diag(inverse)) / scale
-
-
-def _leading(residue: FloatArray) -> FloatArray:
-    """Return the shape of the closest matrix of rank one."""
-    value, vector = np.linalg.eigh(residue)
-    return np.asarray(vector[:, -1] * np.sqrt(max(float(value[-1]), 0.0)))
-
-
-def _shape_sd(spread: FloatArray) -> FloatArray:
-    """Return about the standard deviation of each row of a shape."""
-    return np.asarray(np.sqrt(np.diag(spread)))
-
-
-def _rigid_rows(rigid: FloatArray, spread: FloatArray) -> FloatArray:
-    """Return the rigid motions that rise above the noise, as rows."""
-    value, vector = np.linalg.eigh(rigid)
-    noise = float(np.linalg.norm(spread, 2))
-    kept = np.flatnonzero(value > _ABOVE_NOISE * noise)[-_MOST_RIGID:]
-    return np.asarray((vector[:, kept] * np.sqrt(value[kept])).T)
-
-
-def with_uncertainty(
-    result: Callable[[Sequence[ModalTable]], FloatArray],
-    blocks: Sequence[FrfBlock],
-    band: tuple[float, float],
-    *,
-    draws: int = 40,
-    seed: int = 0,
-) -> tuple[FloatArray, FloatArray]:
-    """Compute something from measured bodies, with its standard deviation.
-
-    Args:
-        result: from the tables of the bodies, for example coupled frequencies.
-        blocks: FRFs of the bodies.
-        band: of the fits [Hz].
-        draws: from the uncertainty of the fits.
-        seed: of the draws.
-
-    Returns:
-        The result, and its standard deviation: that of the draws, and the change with
-        one power less, which shows how well the modes above the band are described.
-    """
-    random = np.random.default_rng(seed)
-    fits = [fit_frfs(one, band) for one in blocks]
-    value = result([one.table() for one in fits])
-    fewer = [fit_frfs(one, band, powers=_POWERS - 1).table() for one in blocks]
-    apart = result(fewer) - value
-    drawn = np.array(
-        [result([one.drawn(random).table() for one in fits]) for _ in range(draws)]
-    )
-    return value, np.asarray(np.hypot(np.std(drawn, axis=0, ddof=1), apart))

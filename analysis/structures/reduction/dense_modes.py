@@ -10,6 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg.blas import dtrsm
+from scipy.linalg.lapack import dpotrf
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
@@ -24,6 +26,8 @@ _SPARE = 4
 # From this share of all modes on, all of them are computed.
 _MOST_OF_ALL = 0.25
 _SMALL = 160
+# Least diagonal of a Cholesky factor that leaves an orthonormal block after two passes.
+_NEARLY_DEPENDENT = 1e-5
 # Blocks before the first check: fewer never suffice.
 _FIRST_CHECK = 4
 
@@ -124,8 +128,9 @@ def shifted_inverse(
 
 
 def _factor(matrix: FloatArray, shift: float) -> tuple[FloatArray, bool]:
-    # In the order of LAPACK, which then factors in place.
-    shifted = np.array(matrix, order="F")
+    # The transpose of a symmetric matrix has the order of LAPACK, which then factors in
+    # place.
+    shifted = np.array(matrix.T, order="F")
     np.einsum("ii->i", shifted)[:] += shift
     try:
         factor: tuple[FloatArray, bool] = cho_factor(
@@ -189,5 +194,18 @@ def _next_block(space: FloatArray, image: FloatArray) -> FloatArray:
     room = space.shape[0] - space.shape[1]
     for _ in range(2):
         new = new - space @ (space.T @ new)
-        new = np.linalg.qr(new)[0][:, :room]
+        new = _orthonormal(new)[:, :room]
     return np.asarray(new)
+
+
+def _orthonormal(block: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of columns.
+
+    By the Cholesky factor of their products, which takes a third of the time of
+    reflections; these are used where columns are nearly dependent.
+    """
+    scaled = block / np.maximum(np.linalg.norm(block, axis=0), 1e-300)
+    factor, failed = dpotrf(scaled.T @ scaled, lower=1)
+    if failed or np.diag(factor).min(initial=1.0) < _NEARLY_DEPENDENT:
+        return np.asarray(np.linalg.qr(block)[0])
+    return np.asarray(dtrsm(1.0, factor, scaled.T, lower=1).T)

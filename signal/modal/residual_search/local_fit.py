@@ -14,7 +14,7 @@ what its residues could have explained by chance.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -123,10 +123,16 @@ def group_around(
     else:
         part = kept
     residual = whole.residual[:, part]
-    lines = FrfLines(whole.lines.laplace[part], residual, whole.lines.derivatives)
+    end = whole.lines.end
+    lines = replace(
+        whole.lines,
+        laplace=whole.lines.laplace[part],
+        response=residual,
+        end=None if end is None else end.at(part),
+    )
     own = _contribution(whole, index, lines)
     return Group(
-        FrfLines(lines.laplace, residual + own, lines.derivatives),
+        replace(lines, response=residual + own),
         whole.noise[:, part],
         whole.variance[:, part],
         residual,
@@ -247,11 +253,15 @@ def try_poles(
             2.0 / size**2,
         )
         rest = (gram - sums.gram) * unit + _ROUNDING * np.eye(n_own)
+        # Exact data can leave nothing but rounding: such a trial is ruled out.
+        sound = np.linalg.slogdet(rest)[0] > 0.0
+        rest[~sound] = np.eye(n_own)
         later = np.linalg.inv(rest) * unit
         drive = force - sums.force
         moved = np.einsum("tij,tj->ti", later, drive)
         gain = sums.gain + np.einsum("ti,ti->t", drive, moved) - force @ still
         factor = gain + sums.log_volume + np.linalg.slogdet(later)[1] - volume
+        factor = np.where(sound, factor, -np.inf)
         spread = np.diagonal(later, axis1=1, axis2=2)
         found.append((*_checked(0.5 * factor, moved - still, spread, leash), gain))
     log_factor, change, spread, gain = (
@@ -331,7 +341,7 @@ def _projected(
         Residues, shape (n_frf, 2 n_poles); products of the other columns with the
         response, shape (n_frf, n), and among each other, shape (n_frf, n, n).
     """
-    n_linear = modal_size(pole)
+    n_linear = modal_size(lines, pole)
     columns = np.hstack(
         (
             modal_basis(lines, pole),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Options of the fit of surfaces: form, outliers, directions, pooled profiles."""
+"""Options of the fit of surfaces: form, outliers, filter, directions, pooling."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,6 +21,15 @@ Outliers = Annotated[
         "robust standard deviations [-], for example 6.",
     ),
 ]
+Filter = Annotated[
+    str | None,
+    typer.Option(
+        "--filter",
+        metavar="SHORT:LONG",
+        help="Gaussian filter before the fit: cut-offs lambda_s and lambda_c with "
+        "units, for example '2.5 um:0.8 mm', '2.5 um:' or ':0.8 mm'.",
+    ),
+]
 Direction = Annotated[
     float | None,
     typer.Option(
@@ -35,6 +45,15 @@ Directions = Annotated[
 Pool = Annotated[
     bool,
     typer.Option("--pool", help="Profiles of one surface: fit them together as well."),
+]
+StructureMapFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--structure-map",
+        metavar="PATH",
+        help="CSV file to write: the structure function of one surface at all lags up "
+        "to a tenth of its sides.",
+    ),
 ]
 WaveRatio = Annotated[
     float | None,

@@ -69,7 +69,7 @@ def surface(files, monkeypatch, capsys, tmp_path):
     def run(*words):
         monkeypatch.setenv("COLUMNS", "250")
         target = tmp_path / "found.json"
-        given = [files / word if word.endswith(".csv") else word for word in words]
+        given = [files / word if str(word).endswith(".csv") else word for word in words]
         line = ["jointbench", "surface", *map(str, given), "--json", str(target)]
         monkeypatch.setattr("sys.argv", line)
         assert exit_code(app, debug=False) == 0
@@ -115,6 +115,32 @@ def test_form_and_outliers_are_removed_and_stated(surface):
     assert steps["remove_form"]["rms_taken_m"] == pytest.approx(5.96e-6, rel=0.02)
     assert "bent: 2 of 3000 points masked as outliers" in shown
     assert "bent: form of degree 2 removed, 5.9" in shown
+
+
+def test_a_refusal_names_the_option_that_helps(surface):
+    """Bent and spiky: without options the line names both, and D as they give it."""
+    one = surface("bent.csv")[0]["files"][0]
+    assert one["verdict"] == "no scaling range"
+    assert one["remedy"].startswith("--outliers 6 --form 2 helps: fractal")
+    assert surface("p1.csv")[0]["files"][0]["remedy"] is None
+
+
+def test_a_filter_and_a_structure_map_have_their_door(surface, tmp_path):
+    """Waves over 50 um go: S stops growing; the map file has S at lag 1 as the fit."""
+    plain = surface("p1.csv")[0]["files"][0]
+    path = tmp_path / "map.csv"
+    found, shown = surface("p1.csv", "--filter", ":50 um", "--structure-map", path)
+    one = found["files"][0]
+    assert "waves longer than 50 µm filtered out, 50 points cut off" in shown
+    density = [
+        np.interp(1e-4, *(np.array(each["spectrum"][k])[::-1] for k in keys))
+        for each in (plain, one)
+        for keys in [("wavelength_m", "density_m3")]
+    ]
+    assert density[1] < 0.1 * density[0]
+    lag, value = np.loadtxt(path, delimiter=",", skiprows=1)[:2].T
+    assert lag == pytest.approx([0, 0.5])
+    assert value[0] == 0 < value[1]
 
 
 def test_steps_of_the_instrument_are_read_before_the_form_is_removed(surface, files):
@@ -219,6 +245,8 @@ def test_a_weierstrass_profile_is_fitted_beside(surface):
         ("p0.csv", ["--form", "20"], "a form has 1 to 8"),
         ("p0.csv", ["--outliers", "0.5"], "it must be above 1"),
         ("p0.csv", ["--weierstrass", "1"], "it must be above 1"),
+        ("p0.csv", ["--filter", "2.5 um"], "give lambda_s and lambda_c"),
+        ("p0.csv", ["--filter", "2 um:1 s"], "'s'"),
     ],
 )
 def test_an_option_that_does_not_suit_is_refused(refusal, name, options, said):

@@ -1,12 +1,17 @@
 """Recipes: what they say reaches the chain, what is wrong is named."""
 
+import math
 from pathlib import Path
 
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.hits.windows import WindowRequest
-from jointbench.station.pipeline.recipe_settings import chain_settings
+from jointbench.signal.surface.surface_treatment import UNTREATED, SurfaceTreatment
+from jointbench.station.pipeline.recipe_settings import (
+    chain_settings,
+    surface_treatment_of,
+)
 from jointbench.station.schemas.recipe import Recipe, read_recipe, recipe_digest
 
 
@@ -100,6 +105,15 @@ def test_the_digest_follows_the_content_and_not_the_spelling(tmp_path: Path) -> 
     )
     other = read_recipe(written(tmp_path, '[windows]\nforce_width = "3 ms"\n'))
     assert recipe_digest(first) == recipe_digest(same) != recipe_digest(other)
+
+
+def test_steps_before_the_fit_of_surfaces_reach_the_treatment(tmp_path: Path) -> None:
+    """Lengths in SI, the direction in radians; a recipe without them keeps its key."""
+    text = '[surface]\nform = 2\nlambda_c = "0.8 mm"\ndirection = 90\n'
+    found = surface_treatment_of(read_recipe(written(tmp_path, text)))
+    assert found == SurfaceTreatment(form=2, long=8e-4, direction=math.pi / 2)
+    assert surface_treatment_of(Recipe()) == UNTREATED
+    assert Recipe().model_dump()["surface"] == {"use": True, "gamma": None}
 
 
 def test_the_digest_follows_the_model_that_is_named(tmp_path: Path) -> None:
