@@ -23,23 +23,23 @@ _TILT = np.array([[1.0, -0.45, 0.0], [0.0, 0.35, 1.0]])
 _EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
 
 
-class _Part(BaseModel):
+class _PlacePart(BaseModel):
     """A part of the nominal parameters; the picture uses what is there."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 
 
-class _At(_Part):
+class _At(_PlacePart):
     position_mm: Place
     name: str = ""
 
 
-class _Body(_Part):
+class _Body(_PlacePart):
     size_mm: Place
     corner_mm: Place
 
 
-class _PlacesFile(_Part):
+class _PlacesFile(_PlacePart):
     bolts_mm: tuple[Place, ...] = ()
     feet_mm: tuple[Place, ...] = ()
     hammer_points: dict[str, _At] = Field(default_factory=dict)

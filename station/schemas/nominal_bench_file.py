@@ -58,7 +58,7 @@ class _Feet(_NominalPart):
     rel_sigma: _Sigmas
 
 
-class _Table(_NominalPart):
+class _ModalTable(_NominalPart):
     frequency_rel_sigma: Annotated[float, Field(ge=0, le=0.1)] = 0.0
     shape_rel_sigma: Annotated[float, Field(ge=0, le=0.3)] = 0.0
 
@@ -83,7 +83,7 @@ class NominalFile(_NominalPart):
     plate_damping_ratio: Positive
     plate_damping_rel_sigma: Sigma
     feet: _Feet
-    modal_table: _Table = _Table()
+    modal_table: _ModalTable = _ModalTable()
 
 
 def read_nominal(path: Path) -> tuple[NominalBench, dict[str, PlannedPoint]]:

@@ -21,7 +21,7 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     JointedBodies,
     MassPlace,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import LawKind, PortLaws
+from jointbench.analysis.gap.structure_bench.port_laws import LawForm, PortLaws
 
 RATE = 32_768.0
 """Of the raw force [Hz]."""
@@ -114,8 +114,8 @@ def integrated(
     feet = bodies.feet.reshape(-1, n)
     foot = state.foot[0] * np.repeat(state.foot_factor, 3)
     sensors = bodies.sensors if state.sensors is None else state.sensors
-    sliding = [law for law in state.laws if law.kind == LawKind.FRICTION]
-    others = [law for law in state.laws if law.kind != LawKind.FRICTION]
+    sliding = [law for law in state.laws if law.kind == LawForm.FRICTION]
+    others = [law for law in state.laws if law.kind != LawForm.FRICTION]
     ports = np.array([p for law in sliding for p in law.ports], dtype=int)
     slips = np.array([law.slips for law in sliding for _ in law.ports])
     weights = np.array([law.weights for law in sliding for _ in law.ports])
@@ -166,9 +166,9 @@ def integrated(
 def _force(law: PortLaws, motion: FloatArray, speed: FloatArray) -> FloatArray:
     """Return the force of a law without memory, shape (n_ports,)."""
     forces = {
-        LawKind.STOP: np.maximum(motion - law.gap, 0.0),
-        LawKind.CUBIC: motion**3,
-        LawKind.QUADRATIC: motion**2,
-        LawKind.SQUARE_DAMPING: speed * np.abs(speed),
+        LawForm.STOP: np.maximum(motion - law.gap, 0.0),
+        LawForm.CUBIC: motion**3,
+        LawForm.QUADRATIC: motion**2,
+        LawForm.SQUARE_DAMPING: speed * np.abs(speed),
     }
     return np.asarray(law.size * forces[law.kind])

@@ -28,7 +28,7 @@ from jointbench.analysis.gap.structure_bench.port_integration import (
     closed_modes,
     integrate_laws,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import LawKind, law_ports
+from jointbench.analysis.gap.structure_bench.port_laws import LawForm, law_ports
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 
@@ -251,7 +251,7 @@ def law_forces(
     hits, bodies = campaign.hits, campaign.bodies
     step = hits.filter.step
     if parts is None:
-        friction = all(law.kind == LawKind.FRICTION for law in state.laws)
+        friction = all(law.kind == LawForm.FRICTION for law in state.laws)
         parts = STRUCTURE.slider_steps if friction else STRUCTURE.law_steps
         if frame.count < hits.force.shape[1]:
             parts //= STRUCTURE.window_coarseness

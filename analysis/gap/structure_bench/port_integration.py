@@ -16,7 +16,7 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntAr
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.analysis.gap.structure_bench.joint_state import JointState
 from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
-from jointbench.analysis.gap.structure_bench.port_laws import LawKind, law_ports
+from jointbench.analysis.gap.structure_bench.port_laws import LawForm, law_ports
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 _Laws = tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]
@@ -114,7 +114,7 @@ class ActingLaws:
     Attributes:
         rows: relative motion of each port, shape (n_ports, n_modes).
         kinds: of the law of each port, shape (n_ports,).
-        sizes: stiffness of all sliders together [N/m], or as `LawKind` states,
+        sizes: stiffness of all sliders together [N/m], or as `LawForm` states,
             shape (n_ports,).
         gaps: clearance [m], shape (n_ports,).
         slips: slip displacement of each slider [m], shape (n_ports, n_sliders).
@@ -133,7 +133,7 @@ class ActingLaws:
     @property
     def slides(self) -> bool:
         """Whether all laws are friction, which ends where no slider slips again."""
-        return bool(np.all(self.kinds == LawKind.FRICTION))
+        return bool(np.all(self.kinds == LawForm.FRICTION))
 
 
 def acting_laws(bodies: JointedBodies, state: JointState, torque: float) -> ActingLaws:
@@ -158,7 +158,7 @@ def acting_laws(bodies: JointedBodies, state: JointState, torque: float) -> Acti
     return ActingLaws(
         rows=bodies.bolts.reshape(-1, bodies.omega.size)[ports],
         kinds=kinds,
-        sizes=np.where(kinds == LawKind.FRICTION, sizes * spring, sizes),
+        sizes=np.where(kinds == LawForm.FRICTION, sizes * spring, sizes),
         gaps=np.array([law.gap for law in laws]),
         slips=slips,
         weights=weights,
@@ -215,8 +215,7 @@ def integrate_laws(
         ),
         (laws.kinds, laws.sizes, laws.gaps, laws.slips, laws.weights),
         preload[:, None] ** laws.preload,
-        _parts_of(struck),
-        np.ascontiguousarray(_sharpened(force)),
+        (_parts_of(struck), np.ascontiguousarray(_sharpened(force))),
         (parts, corrections, STRUCTURE.rest_steps if laws.slides else 0),
         found,
     )
@@ -350,8 +349,7 @@ def _integrate(
     instant: tuple[FloatArray, FloatArray],
     laws: _Laws,
     scale: FloatArray,
-    struck: FloatArray,
-    force: FloatArray,
+    hits: tuple[FloatArray, FloatArray],
     numbers: tuple[int, int, int],
     found: FloatArray,
 ) -> None:
@@ -364,8 +362,8 @@ def _integrate(
         instant: motion and velocity of the ports by their forces at a step's end.
         laws: kinds, sizes, gaps, slips and weights of the ports.
         scale: of the slips, shape (n_records, n_ports).
-        struck: modal force of each record per N, shape (2, n_records, n_poles).
-        force: [N], shape (n_records, n_samples).
+        hits: modal force of each record per N, shape (2, n_records, n_poles), and
+            force [N], shape (n_records, n_samples).
         numbers: steps per sample, corrections per step, and steps between two
             questions whether the sliders rest (0: never).
         found: shape (n_records, n_ports, n_samples).
@@ -373,6 +371,7 @@ def _integrate(
     grow, a0, a1, gain = steps
     shown, speeds, push = ports
     parts, corrections, asked = numbers
+    struck, force = hits
     n_poles, n_ports, n_sliders = grow.shape[1], found.shape[1], laws[3].shape[1]
     x, before = np.empty((2, n_poles)), np.empty((2, n_poles))
     first, last = np.empty((n_ports, n_sliders)), np.empty((n_ports, n_sliders))

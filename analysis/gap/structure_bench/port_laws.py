@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 
-class LawKind(IntEnum):
+class LawForm(IntEnum):
     """Kind of a law; the comment gives the force at a relative motion r."""
 
     FRICTION = 0  # share k (sum of weight times clipped stretch - r)
@@ -39,7 +39,7 @@ class PortLaws:
     size: float
     slips: FloatArray = field(default_factory=lambda: np.zeros(0))
     weights: FloatArray = field(default_factory=lambda: np.zeros(0))
-    kind: LawKind = LawKind.FRICTION
+    kind: LawForm = LawForm.FRICTION
     gap: float = 0.0
     preload: float = 0.0
 

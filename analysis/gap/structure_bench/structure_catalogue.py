@@ -21,7 +21,7 @@ from jointbench.analysis.gap.structure_bench.linear_structure_effects import (
     SENSOR_EFFECTS,
 )
 from jointbench.analysis.gap.structure_bench.port_laws import (
-    LawKind,
+    LawForm,
     PortLaws,
     iwan_sliders,
 )
@@ -57,7 +57,7 @@ def _slip(
     return replace(state, laws=(*state.laws, laws))
 
 
-def _at_bolt(kind: LawKind) -> Change:
+def _at_bolt(kind: LawForm) -> Change:
     """Return the change by a law in the normal direction of a bolt."""
 
     def change(
@@ -84,7 +84,7 @@ def _law(
     name: str,
     family: str,
     parameters: tuple[Parameter, ...],
-    kind: LawKind,
+    kind: LawForm,
     source: str,
 ) -> StructureEffect:
     return StructureEffect(
@@ -175,7 +175,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
                 transform=Transform.LOG,
             ),
         ),
-        LawKind.STOP,
+        LawForm.STOP,
         "Shaw and Holmes 1983, J. Sound Vib. 90, 129",
     ),
     _law(
@@ -186,21 +186,21 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
                 "k3", "N/m^3", "stiffness/travel^2", lower=0.0, upper=1e5, off=0.0
             ),
         ),
-        LawKind.CUBIC,
+        LawForm.CUBIC,
         "Nayfeh and Mook 1979, Nonlinear Oscillations, sec. 4.1",
     ),
     _law(
         "quadratic",
         "stiffness",
         (Parameter("k2", "N/m^2", "stiffness/travel", lower=-1e3, upper=1e3, off=0.0),),
-        LawKind.QUADRATIC,
+        LawForm.QUADRATIC,
         "Nayfeh and Mook 1979, Nonlinear Oscillations, sec. 4.2",
     ),
     _law(
         "damping_law",
         "damping",
         (Parameter("c2", "N s^2/m^2", "damping/speed", lower=0.0, upper=1e4, off=0.0),),
-        LawKind.SQUARE_DAMPING,
+        LawForm.SQUARE_DAMPING,
         "Nayfeh and Mook 1979, Nonlinear Oscillations, sec. 3.3",
     ),
 )

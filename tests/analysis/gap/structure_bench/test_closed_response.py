@@ -24,7 +24,7 @@ from jointbench.analysis.gap.structure_bench.landing import (
     point_columns,
 )
 from jointbench.analysis.gap.structure_bench.port_laws import (
-    LawKind,
+    LawForm,
     PortLaws,
     iwan_sliders,
 )
@@ -92,10 +92,10 @@ def test_the_linear_response_is_that_of_an_integrator() -> None:
 
 
 FOUR_LAWS = (
-    PortLaws((2,), 4e15, kind=LawKind.CUBIC),
-    PortLaws((5,), 1e11, kind=LawKind.QUADRATIC),
-    PortLaws((8,), 2e7, kind=LawKind.STOP, gap=2e-6),
-    PortLaws((11,), 2e4, kind=LawKind.SQUARE_DAMPING),
+    PortLaws((2,), 4e15, kind=LawForm.CUBIC),
+    PortLaws((5,), 1e11, kind=LawForm.QUADRATIC),
+    PortLaws((8,), 2e7, kind=LawForm.STOP, gap=2e-6),
+    PortLaws((11,), 2e4, kind=LawForm.SQUARE_DAMPING),
 )
 
 
