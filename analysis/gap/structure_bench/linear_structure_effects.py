@@ -13,32 +13,36 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
+from jointbench.analysis.gap.structure_bench.bolt_sites import (
+    each_bolt,
+    where_rigid,
+    with_torques,
+)
 from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.joint_axes import (
+    bolt_arms,
+    joint_axes,
+)
 from jointbench.analysis.gap.structure_bench.joint_state import (
     Attached,
     CableResonance,
     JointState,
 )
 from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
-from jointbench.analysis.gap.structure_bench.structure_effects import (
-    Change,
-    Sites,
-    StructureEffect,
-)
-from jointbench.analysis.gap.structure_bench.structure_sites import (
-    bolt_arms,
+from jointbench.analysis.gap.structure_bench.place_sites import (
     each_body,
-    each_bolt,
     each_channel,
     each_direction,
     each_foot,
     each_place,
-    joint_axes,
     place_and_direction,
     place_of,
     turned_channels,
-    where_rigid,
-    with_torques,
+)
+from jointbench.analysis.gap.structure_bench.structure_effects import (
+    Change,
+    Sites,
+    StructureEffect,
 )
 
 _Report = Callable[[FloatArray], tuple[Reported, ...]]

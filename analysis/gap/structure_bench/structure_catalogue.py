@@ -12,6 +12,12 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
+from jointbench.analysis.gap.structure_bench.bolt_sites import (
+    each_sliding_bolt,
+    each_sprung_bolt,
+    sliding_bolts,
+    tangential_ports,
+)
 from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.joint_state import JointState
 from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
@@ -28,12 +34,6 @@ from jointbench.analysis.gap.structure_bench.port_laws import (
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     Change,
     StructureEffect,
-)
-from jointbench.analysis.gap.structure_bench.structure_sites import (
-    each_sliding_bolt,
-    each_sprung_bolt,
-    sliding_bolts,
-    tangential_ports,
 )
 
 
