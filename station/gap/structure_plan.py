@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.station.files.json_file import read_json
+from jointbench.station.report.gap_sentences import place
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import Plot, Report, Section
 from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
@@ -144,10 +145,10 @@ def structure_section(plan: StructurePlan, found: Diagnosis) -> Section:
     caption = "The structure in oblique view (x to the right, z up)."
     if sites:
         named = ", ".join(
-            f"{e.name.replace('_', ' ')} at {e.site}" for e in found.effects
+            f"{e.name.replace('_', ' ')} {place(e.site)}" for e in found.effects
         )
         caption += f" Marked: {named}."
-    picture = Plot("structure", caption, structure_figure(plan, sites), _HEIGHT)
+    picture = Plot("plan", caption, structure_figure(plan, sites), _HEIGHT)
     return Section("structure", "Structure", (picture,))
 
 

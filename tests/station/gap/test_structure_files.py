@@ -61,7 +61,9 @@ def test_a_loose_bolt_is_named_with_its_factor(
     assert "left out r001: double" in shown
     written = json.loads(target.read_text(encoding="utf-8"))
     assert written["effects"][0]["site"] == "bolt:2"
-    assert "Loose bolt at bolt 2" in report.read_text(encoding="utf-8")
+    page = report.read_text(encoding="utf-8")
+    assert "Loose bolt at bolt 2" in page
+    assert page.count('id="structure"') == page.count('id="plan"') == 1
 
 
 def test_nothing_is_named_where_nothing_is_missing(
