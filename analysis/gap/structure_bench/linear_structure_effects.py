@@ -392,6 +392,7 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         each_foot,
         _hold_foot,
+        always=True,
     ),
 )
 """Linear effects of bodies and of what stands beside them."""
