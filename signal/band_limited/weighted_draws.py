@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtri
-from scipy.stats import qmc
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.band_limited.band_records import Interval95
@@ -95,6 +94,8 @@ def _about(likelihood: SpectralLikelihood, found: Maximum) -> WeightedDraws:
     scaled = information[np.ix_(free, free)] / np.outer(size, size)
     spread = np.linalg.inv(scaled + 1e-6 * np.eye(count)) / np.outer(size, size)
     root = np.linalg.cholesky(spread)
+    from scipy.stats import qmc  # slow to import
+
     plane = qmc.Sobol(count + 1, scramble=True, rng=1).random(DRAWS)
     normal = ndtri(np.clip(plane[:, :count], 1e-9, 1 - 1e-9))
     # A gamma variable by the approximation of Wilson and Hilferty.
