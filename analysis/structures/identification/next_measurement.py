@@ -22,6 +22,10 @@ _DAMPING_SD = 0.05
 _HELPS = 0.5
 # Least relative difference of distinguishable frequencies of two solutions.
 _DISTINGUISHABLE = 0.003
+# Eigenvalue of the scaled information below which a direction is open: rounding.
+_NO_INFORMATION = 1e-12
+# Share of an unknown in an open direction above which the unknown is open.
+_TOUCHED = 1e-3
 
 
 def what_to_measure(problem: StiffnessProblem, best: Optimum, at: int) -> str:
@@ -95,11 +99,19 @@ def what_separates(problem: StiffnessProblem, best: Optimum, rival: Optimum) -> 
 
 
 def _sd_with(information: FloatArray, slope: FloatArray, at: int) -> float:
-    """Return the standard deviation in ln after one more row."""
+    """Return the standard deviation in ln after one more row, inf where it is open."""
     whole = information + np.outer(slope, slope)
+    size = np.sqrt(np.diag(whole))
+    if size[at] == 0.0:
+        return np.inf
+    size = np.where(size > 0.0, size, 1.0)
     # Scaled, so that undetermined unknowns do not spoil the determined ones.
-    whole = whole + 1e-12 * np.eye(whole.shape[0])
-    return float(np.sqrt(np.linalg.inv(whole)[at, at]))
+    value, vector = np.linalg.eigh(whole / np.outer(size, size))
+    free = value < _NO_INFORMATION * value[-1]
+    if np.any(np.abs(vector[at, free]) > _TOUCHED):
+        return np.inf
+    share = vector[at, ~free] ** 2 / value[~free]
+    return float(np.sqrt(share.sum()) / size[at])
 
 
 def _frequency_slope(
