@@ -98,7 +98,9 @@ def _sd_with(information: FloatArray, slope: FloatArray, at: int) -> float:
     """Return the standard deviation in ln after one more row."""
     whole = information + np.outer(slope, slope)
     # Scaled, so that undetermined unknowns do not spoil the determined ones.
-    whole = whole + 1e-12 * np.eye(whole.shape[0])
+    # Relative to the largest, or rounding could leave the matrix singular.
+    size = max(1.0, float(np.trace(whole)))
+    whole = whole + 1e-12 * size * np.eye(whole.shape[0])
     return float(np.sqrt(np.linalg.inv(whole)[at, at]))
 
 
