@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.lumped.identified import IdentificationVerdict
 from jointbench.analysis.structures.identification.identify_structure import (
@@ -21,18 +21,12 @@ from jointbench.analysis.structures.identification.sensor_masses import (
     SensorMasses,
     sensor_masses,
 )
-from jointbench.analysis.structures.identification.stiffness_problem import Prior
 from jointbench.analysis.structures.matrices.structure import Structure
-from jointbench.analysis.structures.reduction.body_moduli import (
-    is_modulus,
-    modulus_name,
-    with_moduli,
-)
+from jointbench.analysis.structures.reduction.body_moduli import with_moduli
 from jointbench.analysis.structures.reduction.mounted_sensors import (
     MountedSensor,
     sensor_rows,
 )
-from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_structure
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.analysis.structures.reduction.reduction_cache import cached, content_key
@@ -43,6 +37,14 @@ from jointbench.station.joints.contact_comparison import (
     identified_states,
     known_preloads,
     theory_json,
+)
+from jointbench.station.joints.identify_checks import (
+    SPARE_MODES,
+    check_measured,
+    check_request,
+    known_priors,
+    known_values,
+    mode_counts,
 )
 from jointbench.station.joints.structure_contact import joint_of, theory_surface
 from jointbench.station.joints.structure_model import (
@@ -57,14 +59,12 @@ from jointbench.station.joints.structure_states import (
     all_evidence,
     measured_states,
 )
-from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
 from jointbench.station.screen.terminal import console, table, working, write_json
 
 RIGID_MODES = 6
-SPARE_MODES = 4
 
 
 def run_identify_structure(
@@ -88,8 +88,10 @@ def run_identify_structure(
     settings = read_toml(model, StructureModel)
     with working("meshing"):
         structure = structure_of(settings, model.parent)
+    check_request(settings, structure, sessions)
     surface = _surface(settings, model, surfaces, sessions)
     measured = measured_states(sessions, band)
+    check_measured(settings, structure, measured)
     preloads = _preloads(settings, measured)
     sensors = {**sensors_of(settings.hits), **sensors_of(settings.sensors)}
     with working("reducing, identifying joints"):
@@ -98,10 +100,10 @@ def run_identify_structure(
         result = identify_structure(
             reduced,
             evidence,
-            known=_known(settings.identify, reduced.names),
+            known=known_values(settings.identify, reduced.names),
             sought=settings.identify.sought,
             shared=settings.identify.shared,
-            priors=_priors(settings.identify),
+            priors=known_priors(settings.identify),
             search=StructureSearch(masses=_masses(settings, structure, reduced)),
             structure=structure,
         )
@@ -173,16 +175,8 @@ def _reduced(
     sensors: dict[str, MountedSensor],
     cache: Path | None,
 ) -> ReducedModel:
-    counts = [
-        state.chain.result.model.natural_frequency.size for state in measured.values()
-    ]
-    if settings.measured is not None:
-        counts.append(len(settings.measured.frequencies))
-    if not counts:
-        raise UsageError(
-            "no measurement: give a session, or a table [measured] in the model"
-        )
-    modes = settings.identify.modes or RIGID_MODES + max(counts) + SPARE_MODES
+    most = max(mode_counts(settings, measured).values())
+    modes = settings.identify.modes or RIGID_MODES + most + SPARE_MODES
     box = settings.identify.stiffness_box
     loads = sensor_rows(structure, list(sensors.values())) if sensors else None
     key = content_key(structure, modes, box, sorted(map(repr, sensors.values())))
@@ -202,38 +196,6 @@ def _masses(
     if not unknown:
         return None
     return sensor_masses(structure, reduced, masses_of(settings), unknown)
-
-
-def _known(table: IdentifyTable, names: tuple[str, ...]) -> JointValues | None:
-    """Return the stiffness of the directions that are not sought, undamped.
-
-    Raises:
-        BadData: one of them is not given, or a name does not exist.
-    """
-    if table.sought is None and not table.known:
-        return None
-    for name in table.known:
-        if name not in names or name in (table.sought or names):
-            raise BadData(
-                f"identify.known: {name!r} is no joint direction that is left out of "
-                f"identify.sought; there are {list(names)}"
-            )
-    open_ = {*(table.sought or names), *table.known}
-    left = [n for n in names if n not in open_ and not is_modulus(n)]
-    if left:
-        raise BadData(
-            f"{left} are neither sought nor known; give their stiffness in "
-            f'identify.known, for example known = {{ "{left[0]}" = "500 MN/m" }}'
-        )
-    stiffness = np.array([table.known.get(name, 1.0) for name in names])
-    return JointValues(stiffness, np.zeros(len(names)))
-
-
-def _priors(table: IdentifyTable) -> dict[str, Prior]:
-    """Return the priors of joints and of moduli by the name of the parameter."""
-    joints = {name: Prior(*one) for name, one in table.priors.items()}
-    moduli = {modulus_name(n): Prior(1.0, sd) for n, sd in table.modulus_sd.items()}
-    return joints | moduli
 
 
 def show_structure(result: StructureIdentification, json_target: str | None) -> None:

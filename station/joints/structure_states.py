@@ -132,14 +132,26 @@ def _named(
     labels: Sequence[str], places: dict[str, MountedSensor], kind: str
 ) -> list[MountedSensor]:
     """Return the places of channels ``"channel@point"`` or of hit points."""
+    require_named(labels, places, kind)
+    return [places[label.partition("@")[0]] for label in labels]
+
+
+def require_named(
+    labels: Sequence[str], places: dict[str, MountedSensor], kind: str
+) -> None:
+    """Require a place for channels ``"channel@point"`` or for hit points.
+
+    Raises:
+        BadData: one of them has none.
+    """
     names = [label.partition("@")[0] for label in labels]
     missing = [name for name in names if name not in places]
     if missing:
         raise BadData(
             f"{missing[0]!r} of the session is not among [{kind}.*] of the model, "
-            f"which are {list(places)}; add its position"
+            f"which are {list(places)}; add [{kind}.{missing[0]}] with body, "
+            "position and direction"
         )
-    return [places[name] for name in names]
 
 
 def _measured(modes: ModalModel, trust: IdentifyTable) -> MeasuredModes:

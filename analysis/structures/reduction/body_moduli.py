@@ -10,11 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.joint_spread import JointSpread
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+from jointbench.analysis.structures.reduction.structure_bodies import body_ranges
 
 MODULUS = "modulus"
 
@@ -79,14 +81,20 @@ def scaled_structure(structure: Structure, factors: Mapping[str, float]) -> Stru
 
     Args:
         structure: bodies and joints.
-        factors: by the name of the body.
+        factors: by the name of the body; glued ones are joined by ``"+"``.
     """
     scale = np.ones(structure.size)
-    for body, low, high in zip(
-        structure.bodies, structure.blocks, structure.blocks[1:], strict=False
-    ):
-        scale[low:high] = factors.get(body.name, 1.0)
-    # Bodies are blocks: every row of a body has its factor.
-    whole = structure.stiffness.tocsr(copy=True)
+    for one in body_ranges(structure):
+        scale[one.low : one.high] = factors.get(one.name, 1.0)
+    return replace(
+        structure,
+        stiffness=_rows_times(structure.stiffness, scale),
+        glue=_rows_times(structure.glue, scale),
+    )
+
+
+def _rows_times(matrix: Sparse, scale: FloatArray) -> Sparse:
+    """Multiply the rows; bodies are blocks, so that the matrix stays symmetric."""
+    whole = matrix.tocsr(copy=True)
     whole.data *= np.repeat(scale, np.diff(whole.indptr))
-    return replace(structure, stiffness=Sparse(whole))
+    return Sparse(whole)

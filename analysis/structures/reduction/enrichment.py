@@ -14,9 +14,9 @@ from jointbench.analysis.structures.reduction.port_joints import PortJoint
 from jointbench.analysis.structures.reduction.reduced_model import solve_reduced
 from jointbench.analysis.structures.reduction.relative_motion import pattern_blocks
 
-# Traction patterns of each joint and direction, and motions of each body, added at
-# once.
+# Traction patterns of each joint and direction that are added at once.
 _PATTERNS = 8
+# Motions of each body, times the number of the enrichment (decision record 0198).
 _MOTIONS = 16
 # Singular values below this share of the largest are left out.
 _SMALL = 1e-4
@@ -37,12 +37,16 @@ class Enrichment:
     inertia: Mapping[str, FloatArray]
 
 
-def enrichment(whole: Assembled, points: Sequence[FloatArray]) -> Enrichment:
+def enrichment(
+    whole: Assembled, points: Sequence[FloatArray], number: int = 1
+) -> Enrichment:
     """Return the tractions and motions of the modes at some points of the box.
 
     Args:
         whole: the assembly.
         points: stiffnesses [N/m], each of shape (n_parameters,).
+        number: of the enrichment, from 1: motions replace those of the one before, so
+            a later one takes more of them.
 
     Returns:
         For the next reduction of the bodies.
@@ -64,7 +68,8 @@ def enrichment(whole: Assembled, points: Sequence[FloatArray]) -> Enrichment:
     inertia = {}
     for body, place in zip(whole.components, whole.places, strict=True):
         vector, size, _ = np.linalg.svd(motion[place], full_matrices=False)
-        kept = vector[:, :_MOTIONS][:, size[:_MOTIONS] > _SMALL * size[0]]
+        most = number * _MOTIONS
+        kept = vector[:, :most][:, size[:most] > _SMALL * size[0]]
         inertia[body.name] = body.basis @ kept
     return Enrichment(patterns, inertia)
 

@@ -192,7 +192,7 @@ def reduce_structure(
         if not found.weak:
             return found.model
         worst.append(found.worst)
-        more = enrichment(whole, found.weak[:_AT_ONCE])
+        more = enrichment(whole, found.weak[:_AT_ONCE], len(worst))
         ports = widened(ports, joints, more.patterns)
         inertia = more.inertia
     raise BadData(

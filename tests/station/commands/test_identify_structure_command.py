@@ -147,3 +147,35 @@ def test_directions_that_are_not_sought_need_a_known_stiffness(
     model.write_text(f"{BLOCKS}known = {{ {tangents} }}\n", encoding="utf-8")
     assert run(monkeypatch, "identify", str(model)) == EXIT_BAD_DATA
     assert "left out of identify.sought" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('sought = ["bed.axial"]', "identify.sought: there is no 'bed.axial'"),
+        ('shared = ["bad.normal"]', "identify.shared: there is no 'bad.normal'"),
+        ('priors = { "bed.n" = ["1 GN/m", "20 %"] }', "identify.priors: there is no"),
+        ('modulus_sd = { bed = "3 %" }', "write one of ['block']"),
+        ('mass_sd = { a1 = "20 %" }', "identify.mass_sd: there is no 'a1'"),
+        ("modes = 2", "3 modes of 'measured' were measured; leave identify.modes out"),
+    ],
+)
+def test_a_wrong_request_is_said_before_the_reduction(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    line: str,
+    said: str,
+) -> None:
+    """The message names the key and what may be written; nothing was reduced."""
+
+    def reduced(*_: object, **__: object) -> None:
+        raise AssertionError("the structure was reduced")
+
+    where = "jointbench.station.commands.identify_structure_command.reduce_structure"
+    monkeypatch.setattr(where, reduced)
+    model = tmp_path / "block.toml"
+    text = BLOCKS.replace("modes = 6\n", "") + line + "\n"
+    model.write_text(text, encoding="utf-8")
+    assert run(monkeypatch, "identify", str(model)) == EXIT_BAD_DATA
+    assert said in " ".join(capsys.readouterr().err.split())
