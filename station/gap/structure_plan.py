@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,20 @@ from jointbench.station.screen.page_parts import Plot, Report, Section
 from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
 
 Place = tuple[float, float, float]
-NAMED_COLOR = PALETTE[1]
-_HEIGHT = 460
+NAMED_COLOR = PALETTE[0]
+"""As the bars of the model with the effect; the base model has the next color."""
+_HEIGHT = 480
 _TILT = np.array([[1.0, -0.45, 0.0], [0.0, 0.35, 1.0]])
 """Oblique view: x to the right, z up, y backwards to the left."""
+_LOOK = {
+    "bolts": ("circle", PALETTE[2], "middle left"),
+    "feet": ("square", PALETTE[3], "middle right"),
+    "hammer points": ("triangle-down", PALETTE[4], "middle right"),
+    "sensors": ("diamond", PALETTE[5], "top center"),
+}
+"""Symbol, color and place of the name, of each kind of place."""
+_ROOM = "   "
+"""Keeps names clear of the ring around a named place."""
 _EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
 
 
@@ -57,12 +68,14 @@ class StructurePlan:
         kinds: bolts, feet, hammer points or sensors, of each place.
         positions: [m], shape (n_places, 3).
         boxes: corners of each body [m], shape (n_bodies, 8, 3).
+        bodies: names of the bodies.
     """
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]
     positions: FloatArray
     boxes: FloatArray
+    bodies: tuple[str, ...]
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -87,7 +100,9 @@ def read_plan(nominal: Path) -> StructurePlan | None:
     names, kinds, places = zip(*rows, strict=True)
     corners = [_corners(body) for body in found.bodies.values()]
     boxes = 1e-3 * np.array(corners).reshape(-1, 8, 3)
-    return StructurePlan(names, kinds, 1e-3 * np.array(places), boxes)
+    return StructurePlan(
+        names, kinds, 1e-3 * np.array(places), boxes, tuple(found.bodies)
+    )
 
 
 def _corners(body: _Body) -> list[list[float]]:
@@ -142,7 +157,10 @@ def structure_section(plan: StructurePlan, found: Diagnosis) -> Section:
         found: verdict with its effects.
     """
     sites = [effect.site for effect in found.effects]
-    caption = "The structure in oblique view (x to the right, z up)."
+    caption = (
+        "The structure in oblique view (x to the right, z up). Bolts and feet count "
+        "from 0, in the order of the nominal parameters."
+    )
     if sites:
         named = ", ".join(
             f"{e.name.replace('_', ' ')} {place(e.site)}" for e in found.effects
@@ -159,24 +177,71 @@ def structure_figure(plan: StructurePlan, sites: Sequence[str]) -> Figure:
         plan: of the structure.
         sites: to be marked.
     """
-    traces: list[Trace] = []
-    for box in plan.boxes:
-        for one, other in _EDGES:
-            x, y = 1e3 * _TILT @ box[[one, other]].T
-            traces.append(line(x, y, "bodies", color=GREY, width=1, legend=False))
-    flat = 1e3 * plan.positions @ _TILT.T
-    symbols = ("circle", "square", "triangle-down", "diamond")
-    kinds = tuple(dict.fromkeys(plan.kinds))
-    for kind, symbol, color in zip(kinds, symbols, PALETTE[2:], strict=False):
-        own = [k for k, one in enumerate(plan.kinds) if one == kind]
-        traces.append(
-            markers(flat[own, 0], flat[own, 1], kind, color=color, symbol=symbol)
-        )
+    traces = _edges(plan, sites)
+    kinds = dict.fromkeys(plan.kinds)
+    traces += [_places(plan, kind) for kind in kinds]
     marked = marked_places(plan, sites)
     if marked:
-        x, y = flat[marked].T
-        traces.append(
-            markers(x, y, "named", color=NAMED_COLOR, symbol="circle-open", size=20)
-        )
+        x, y = _flat(plan.positions[marked])
+        named = markers(x, y, "named", color=NAMED_COLOR, symbol="circle-open")
+        ring = {"color": NAMED_COLOR, "symbol": "circle-open", "size": 22}
+        traces.append({**named, "marker": ring | {"line": {"width": 3}}})
     equal = axis("z and depth [mm]", scaleanchor="x")
-    return figure(traces, axis("x and depth [mm]"), equal)
+    across = axis("x and depth [mm]")
+    return figure(traces, across, equal, annotations=_body_names(plan))
+
+
+def _flat(positions: FloatArray) -> FloatArray:
+    """Return positions [m] in the oblique view [mm], shape (2, n_places)."""
+    return np.asarray(1e3 * _TILT @ positions.T)
+
+
+def _edges(plan: StructurePlan, sites: Sequence[str]) -> list[Trace]:
+    """Return the edges of all bodies; a body that is named has thick ones."""
+    traces = []
+    for name, box in zip(plan.bodies, plan.boxes, strict=True):
+        named = f"body:{name}" in sites
+        color, width = (NAMED_COLOR, 3.0) if named else (GREY, 1.0)
+        for edge in _EDGES:
+            x, y = _flat(box[list(edge)])
+            traces.append(line(x, y, "bodies", color=color, width=width, legend=False))
+    return traces
+
+
+def _places(plan: StructurePlan, kind: str) -> Trace:
+    """Return all places of one kind with their names."""
+    shared: dict[Place, list[str]] = {}
+    for name, own, at in zip(plan.names, plan.kinds, plan.positions, strict=True):
+        if own == kind:
+            x, y, z = at
+            shared.setdefault((x, y, z), []).append(name)
+    symbol, color, side = _LOOK[kind]
+    x, y = _flat(np.array(list(shared)))
+    return {
+        **markers(x, y, kind, color=color, symbol=symbol, size=9),
+        "mode": "markers+text",
+        "text": [f"{_ROOM}{_label(names)}{_ROOM}" for names in shared.values()],
+        "textposition": side,
+        "textfont": {"size": 11, "color": color},
+        "cliponaxis": False,
+    }
+
+
+def _label(sites: Sequence[str]) -> str:
+    """Return the name of a place, for example ``bolt 2``, or ``A1`` of A1x to A1z."""
+    kinds, names = zip(*(site.split(":", 1) for site in sites), strict=True)
+    if kinds[0] in ("bolt", "foot"):
+        return f"{kinds[0]} {names[0]}"
+    same = takewhile(lambda letters: len(set(letters)) == 1, zip(*names, strict=False))
+    return "".join(one[0] for one in same).rstrip(" _-") or ", ".join(names)
+
+
+def _body_names(plan: StructurePlan) -> list[dict[str, object]]:
+    """Return the names of the bodies, each at the lower right of its front."""
+    found: list[dict[str, object]] = []
+    for name, box in zip(plan.bodies, plan.boxes, strict=True):
+        (x,), (y,) = _flat(box[1:2]).round(1).tolist()
+        place_of = {"x": x, "y": y, "xanchor": "right", "yanchor": "bottom"}
+        font = {"size": 12, "color": GREY}
+        found.append({"text": name, "showarrow": False, "font": font, **place_of})
+    return found

@@ -325,10 +325,11 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
     table = DataTable(
         "Tests and their limits.", ("test", "value", "limit", "detail"), tuple(rows)
     )
+    of_force = noise["force_sigma_N"]
+    force_words = f", {of_force:.3g} {force_unit} of the force" if of_force else ""
     floor = (
-        f"Noise floor: {noise['sigma_min']:.3g} to {noise['sigma_max']:.3g} of the "
-        f"response's unit, {noise['force_sigma_N']:.3g} {force_unit} of the force. "
-        f"{_repeatability(found)}"
+        f"Noise floor: {noise['sigma_min']:.3g} to {noise['sigma_max']:.3g} in the "
+        f"unit of the response{force_words}. {_repeatability(found)}"
     )
     items: list[Item] = [Text(floor), table]
     if words := second_method_words(found):

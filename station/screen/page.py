@@ -13,7 +13,17 @@ from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.page_parts import Plot, Report, Section
 
-_PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
+_PROSE_COLUMNS = frozenset(
+    {
+        "reason",
+        "detail",
+        "step",
+        "verdict",
+        "what it does",
+        "how it was set",
+        "verdicts of 20 campaigns that change",
+    }
+)
 """Columns of text, which are left-aligned."""
 # plotly.js interprets tags in texts, links included; our own have no attributes.
 _FOREIGN_TAG = re.compile(r"<(?!/?(?:br|b|i|sub|sup|extra)/?>)")

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from jointbench.station.gap.structure_plan import (
+    NAMED_COLOR,
     StructurePlan,
     marked_places,
     read_plan,
@@ -17,7 +18,7 @@ NOMINAL = {
     "bolts_mm": [[60, 50, 50], [440, 50, 50]],
     "feet_mm": [[50, 50, 0]],
     "hammer_points": {"P1": {"position_mm": [90, 70, 100]}},
-    "sensors": [{"name": "A1", "position_mm": [30, 30, 100]}],
+    "sensors": [{"name": f"A1{axis}", "position_mm": [30, 30, 100]} for axis in "xyz"],
     "bodies": {"top": {"size_mm": [500, 300, 50], "corner_mm": [0, 0, 50]}},
 }
 
@@ -40,8 +41,8 @@ def plan(tmp_path: Path) -> StructurePlan:
         ("point:top bolt 0", ["bolt:0"]),
         ("point:foot 0", ["foot:0"]),
         ("point:P1 normal", ["point:P1"]),
-        ("point:A1", ["channel:A1"]),
-        ("channel:A1", ["channel:A1"]),
+        ("point:A1x", ["channel:A1x"]),
+        ("channel:A1z", ["channel:A1z"]),
         ("body:top", []),
     ],
 )
@@ -58,6 +59,25 @@ def test_the_picture_has_bodies_places_and_the_mark(plan: StructurePlan) -> None
     names = [trace["name"] for trace in picture["data"]]
     assert names.count("bodies") == 12
     assert names[12:] == ["bolts", "feet", "hammer points", "sensors", "named"]
+
+
+def test_places_are_named(plan: StructurePlan) -> None:
+    """Every place has its name; the channels of a triaxial sensor share theirs."""
+    picture: Any = structure_figure(plan, ["bolt:1"])
+    names = [
+        [text.strip() for text in trace["text"]]
+        for trace in picture["data"]
+        if "text" in trace
+    ]
+    assert names == [["bolt 0", "bolt 1"], ["foot 0"], ["P1"], ["A1"]]
+    assert [one["text"] for one in picture["layout"]["annotations"]] == ["top"]
+
+
+def test_a_named_body_has_thick_edges(plan: StructurePlan) -> None:
+    """An effect on a body marks the edges of that body in the color of the name."""
+    picture: Any = structure_figure(plan, ["body:top"])
+    edges = [trace["line"] for trace in picture["data"] if trace["name"] == "bodies"]
+    assert {(edge["color"], edge["width"]) for edge in edges} == {(NAMED_COLOR, 3.0)}
 
 
 def test_nominal_parameters_without_places_have_no_picture(tmp_path: Path) -> None:
