@@ -161,6 +161,8 @@ def _record(model: LevelsModel, level: LevelTable, recording: Recording) -> Leve
         lead=_scaled(table.lead if level.lead is None else level.lead, table.decimate),
         held_out=level.held_out,
         excitation=level.excitation or table.excitation,
+        linear=level.frf_force is not None,
+        offset=table.remove_mean or table.lines is not None,
     )
     if table.lines is not None:
         return one_period(record, record.force.shape[1])

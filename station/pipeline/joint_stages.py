@@ -37,6 +37,7 @@ from jointbench.signal.surface.structure_function import StructureFunction
 from jointbench.signal.surface.surface_treatment import (
     UNTREATED,
     SurfaceTreatment,
+    outside_filters,
     treated,
     treated_structure,
 )
@@ -109,7 +110,8 @@ def _surface(
     )
     name = f"surface {surface.name}"
     key = stages.key("surface", gamma, first)
-    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(structure, gamma=gamma))
+    shown = outside_filters(structure, surface)
+    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(shown, gamma=gamma))
     return SurfaceChain(surface, structure, fit)
 
 

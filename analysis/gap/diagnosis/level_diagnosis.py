@@ -23,6 +23,7 @@ from jointbench.analysis.gap.modal_bench.base_from_records import (
 from jointbench.analysis.gap.modal_bench.level_records import RecordSet
 from jointbench.analysis.gap.modal_bench.modal_base import ModalBase
 from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench, make_modal_bench
+from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
     Estimate,
@@ -82,8 +83,13 @@ def diagnose_levels(
     say = progress or _silent
     say("modes of the lowest level")
     base, chi2 = base_from_records(given, wanted)
+    effort = MODAL.search_effort * policy.most_samples
     bench = make_modal_bench(
-        given, base, without=without, entries=entries, policy=policy
+        given,
+        base,
+        without=without,
+        entries=entries,
+        policy=replace(policy, most_samples=effort),
     )
     outcome = investigate(bench, say)
     final = outcome.bench
@@ -211,8 +217,7 @@ def _scores(
 
 
 def _error(bench: ModalBench, fit: Fit) -> float:
-    modelled = bench.response(fit.base, fit.terms, DIAGNOSIS.scored_steps)
-    return _rms(bench, modelled - bench.data.measured)
+    return _rms(bench, bench.difference(fit.base, fit.terms, DIAGNOSIS.scored_steps))
 
 
 def _rms(bench: ModalBench, values: FloatArray) -> float:

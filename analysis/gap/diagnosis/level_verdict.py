@@ -34,6 +34,8 @@ def level_verdict(outcome: SearchOutcome, bench: ModalBench) -> DiagnosisVerdict
         reason = "no effect of the catalogue explains the records: " + (
             outcome.acceptance.reason
         )
+        if outcome.given_up:
+            reason += "; the search for a further effect reached its effort limit"
         return DiagnosisVerdict(Finding.UNKNOWN, reason, MORE_LEVELS, unexplained=True)
     if not outcome.best.candidates:
         reason = "the modes of the lowest level explain all levels within their noise"

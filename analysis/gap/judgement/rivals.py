@@ -26,8 +26,8 @@ def rival_within(best: Fit, policy: Policy) -> float:
 def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """Return the best fit and those that cannot be distinguished from it.
 
-    An explanation that contains the best one is not a rival: the gain of its further
-    effects is smaller than their charge.
+    An explanation that contains the best one is not a rival, nor is one whose law has
+    that of the best one as a special case: their gain is smaller than their charge.
     """
     if not fits:
         return []
@@ -37,8 +37,20 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
         f
         for f in fits
         if score(bench, f) < best + near
-        and (f is fits[0] or not own < labels_of(f.candidates))
+        and not own < labels_of(f.candidates)
+        and not _generalises(f, fits[0])
     ]
+
+
+def _generalises(fit: Fit, best: Fit) -> bool:
+    """Return whether a fit differs from the best in one law, of which it has a case."""
+    more = [c for c in fit.candidates if c not in best.candidates]
+    special = [c for c in best.candidates if c not in fit.candidates]
+    return (
+        len(more) == len(special) == 1
+        and more[0].site == special[0].site
+        and special[0].effect.name in more[0].effect.generalises
+    )
 
 
 def without_duplicates(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:

@@ -42,6 +42,10 @@ class LevelRecord:
         excitation: random, multisine or sweep; empty if not stated.
         period: of a steady state [samples], which the record ends with; None for any
             other record.
+        linear: whether the record is made from an FRF: the response to a force that was
+            never applied, which a law would distort in another way.
+        offset: whether the mean of the response is not in the record: a law may shift
+            a structure, so that an offset is free then.
     """
 
     name: str
@@ -53,6 +57,8 @@ class LevelRecord:
     held_out: bool = False
     excitation: str = ""
     period: int | None = None
+    linear: bool = False
+    offset: bool = False
 
     def __post_init__(self) -> None:
         """Check the rows once and make them read-only."""
@@ -130,8 +136,14 @@ class RecordSet:
 
     @property
     def training(self) -> tuple[LevelRecord, ...]:
-        """Records that the fits use."""
+        """Records that are not for validation: base and laws come from them."""
         return tuple(r for r in self.records if not r.held_out)
+
+    @property
+    def fitted(self) -> tuple[LevelRecord, ...]:
+        """Records that laws are fitted to: those of FRFs only for want of levels."""
+        measured = tuple(r for r in self.training if not r.linear)
+        return measured if len({r.level for r in measured}) > 1 else self.training
 
     @property
     def lowest(self) -> tuple[LevelRecord, ...]:

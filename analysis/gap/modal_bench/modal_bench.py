@@ -163,13 +163,14 @@ class ModalBench:
         A resolution with a window, which a record without an end does not have, takes
         the laws along the measured motion.
         """
-        r = self.response(
-            base,
-            terms,
-            resolution.oversampling,
-            measured_motion=resolution.window is not None,
+        r = self._left(
+            self.response(
+                base,
+                terms,
+                resolution.oversampling,
+                measured_motion=resolution.window is not None,
+            )
         )
-        r -= self.data.measured
         r *= self.data.scored
         r /= self.sigma[:, :, None]
         return r.ravel()
@@ -178,7 +179,23 @@ class ModalBench:
         self, base: FloatArray, terms: Sequence[Term], oversampling: int
     ) -> FloatArray:
         """Return model minus measurement, shape of the response."""
-        return self.response(base, terms, oversampling) - self.data.measured
+        return self._left(self.response(base, terms, oversampling))
+
+    def _left(self, model: FloatArray) -> FloatArray:
+        """Return a response less the measured one, without the offsets that are free.
+
+        Args:
+            model: the response, which is overwritten.
+        """
+        model -= self.data.measured
+        for r, scored, record in zip(
+            model, self.data.scored, self.data.records, strict=True
+        ):
+            if record.offset:
+                r -= (r * scored).sum(axis=1, keepdims=True) / scored.sum(
+                    axis=1, keepdims=True
+                )
+        return model
 
     def mask(self, values: FloatArray) -> None:
         """Set samples without weight to 0, in place."""
@@ -205,7 +222,7 @@ class ModalBench:
         The noise of a record comes from that record alone, whatever is held out.
         """
         model = self.response(base, terms, FULL.oversampling)
-        residual = (model - self.data.measured) * self.data.scored
+        residual = self._left(model.copy()) * self.data.scored
         return replace(self, sigma=noise_of(self.given, self.data, residual, model))
 
     def views(self, fit: Fit) -> tuple[View, ...]:
@@ -246,7 +263,7 @@ def make_modal_bench(
     Args:
         given: records with sensors, inputs and ports.
         base: nominal modes with priors.
-        records: those of the fits; None for all that are not held out.
+        records: those of the fits; None for those that laws are fitted to.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
         policy: thresholds for its fits.
@@ -256,7 +273,7 @@ def make_modal_bench(
     """
     check_names(without, entries)
     entries = tuple(e for e in entries if e.effect.name not in without)
-    data = shaken(given, given.training if records is None else records, TAIL)
+    data = shaken(given, given.fitted if records is None else records, TAIL)
     scales = port_scales(given, base.nominal, data)
     # Before the first fit, the top of the spectrum of the response bounds the noise.
     sigma = noise_of(given, data, data.measured * data.scored, data.measured)

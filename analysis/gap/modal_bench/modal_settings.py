@@ -114,6 +114,13 @@ class ModalBenchSettings:
         "averaged periods from which their scatter gives the noise",
         "with two, leakage of a transient would count as noise",
     )
+    search_effort: float = numerical(
+        4.0,
+        "of the limit of hits",
+        "predicted samples after which no further effect is searched for",
+        "the single laws of a wing with seven levels take all that hits are given; its "
+        "pair of friction and clearance took half as much again",
+    )
     kept_forces: int = numerical(
         8,
         "sets",

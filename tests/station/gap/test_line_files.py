@@ -7,7 +7,10 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
+from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.station.gap.level_files import read_levels
+from jointbench.station.gap.level_remarks import level_remarks
 from jointbench.station.gap.line_files import LineRequest, read_lines
 
 LINES = np.arange(1, 41) * 0.5
@@ -68,6 +71,55 @@ def test_lines_become_a_period_whose_transform_they_are(path: Path) -> None:
     spectrum = np.fft.rfft(np.asarray(record.samples), axis=1)[:, 1:41] / 64
     assert np.allclose(spectrum[0], columns[1] + 1j * columns[2])
     assert np.allclose(spectrum[1], 1e-3 * (columns[3] + 1j * columns[4]))
+
+
+CUBIC, PERIOD = 6e7, 512
+"""Spring to the ground [N/m^3]; samples of a period."""
+
+
+def periodic(level: float, seed: int) -> tuple[ComplexArray, ComplexArray]:
+    """Return the lines of force [N] and motion [mm] of a mass on a cubic spring.
+
+    The steady state is the fixed point of the linear response to the force less that of
+    the spring, in the frequency domain: no integration in time.
+    """
+    force = np.zeros(PERIOD // 2 + 1, complex)
+    phase = np.random.default_rng(seed).random(LINES.size)
+    force[1 : 1 + LINES.size] = level * np.sqrt(2 / LINES.size) * np.exp(6.3j * phase)
+    s = 2j * np.pi * LINES[0] * np.arange(force.size)
+    flexible, x = 1.0 / (2 * s * s + 40 * s + 8e3), np.zeros(PERIOD)
+    for _ in range(100):
+        spring = np.fft.rfft(CUBIC * x**3) * 2 / PERIOD
+        x = 0.5 * x + np.fft.irfft(0.25 * PERIOD * flexible * (force - spring), PERIOD)
+    return force, 1e3 * np.fft.rfft(x) * 2 / PERIOD
+
+
+def test_a_cubic_spring_is_named_from_an_frf_and_two_levels_of_lines(
+    path: Path,
+) -> None:
+    """The FRF serves the base alone; the harmonics are in the lines."""
+    count = 3 * LINES.size
+    rows = np.arange(1, count + 1) * LINES[0]
+    text = MODEL.replace("64 Hz", "160 Hz").replace("[base]", "[base]\nmodes = 1")
+    text = text.replace("2 N", "1 N")
+    text += '[[levels]]\nname = "harder"\nfiles = ["harder.csv"]\n'
+    path.write_text(text, encoding="utf-8")
+    for name, level in (("soft", 1.0), ("hard", 8.0), ("harder", 18.0)):
+        force, motion = periodic(level, int(level))
+        own = slice(1, count + 1)
+        given = [force[own], motion[own]]
+        if name == "soft":
+            given = [motion[1:41] / force[1:41]]
+        parts = [part for row in given for part in (row.real, row.imag)]
+        lines = np.stack([rows[: given[0].size], *parts], axis=1)
+        np.savetxt(path.parent / f"{name}.csv", lines, "%.9g", ",")
+    levels, wanted = read_levels(path)
+    done = diagnose_levels(levels, wanted)
+    assert done.found.verdict is Finding.NAMED
+    (named,) = done.found.effects
+    assert (named.name, named.site) == ("cubic_stiffness", "link:foot")
+    assert named.parameters[0].value == pytest.approx(CUBIC, rel=2e-3)
+    assert "base alone" in " ".join(level_remarks(levels, done))
 
 
 def test_an_frf_and_periodic_lines_are_levels_of_one_set(path: Path) -> None:
