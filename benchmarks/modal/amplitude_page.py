@@ -212,13 +212,15 @@ def _pairs(rows: Sequence[Row]) -> str:
         row["f_ppm"] <= 500 and row["z_percent"] <= 5 and row["ratio_percent"] <= 2
         for row in given
     ]
-    said = len(rows) - len(given) + sum(right)
+    failed = sum("failed" in row for row in rows)
+    said = len(rows) - failed - len(given) + sum(right)
     return (
         "## Two modes on one joint, 3 to 8 % apart (wanted: ratio within 2 %, f within "
         "500 ppm, zeta within 5 %, or not decided)\n\nThree laws, changes "
         "of 0.03 to 1 % where the joint moves most. Resolved: "
         f"{_share(rows, [bool(row.get('resolved')) for row in rows])}; of these within "
         f"the limits: {wilson(sum(right), len(right))}. Right, or said not to be "
-        f"resolved: {wilson(said, len(rows))}. f and zeta are compared where their "
-        "standard uncertainties are below 250 ppm and 2.5 %.\n"
+        f"resolved: {wilson(said, len(rows))}; of {failed} others the modal fit ended "
+        "with an error that no mode was found, and why. f and zeta are compared where "
+        "their standard uncertainties are below 250 ppm and 2.5 %.\n"
     )

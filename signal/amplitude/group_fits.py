@@ -90,8 +90,23 @@ def fit_groups(
 
 def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> GroupFit:
     """Fit the fewest curves that explain more than all linear modes do."""
-    whole = group.band(model, len(group.members))
     kept = without_companions(model, group)
+    fit = _fewest(decays, model, group, kept)
+    if kept.members == group.members:
+        return fit
+    # A real neighbour may look like a companion, in one channel above all.
+    whole = group.band(model, len(group.members))
+    left = curved_residual(fit.main, decays, whole)
+    if left < linear_residual(decays, whole):
+        return fit
+    return _fewest(decays, model, group, group)
+
+
+def _fewest(
+    decays: RingDowns, model: ModalModel, group: ModeGroup, kept: ModeGroup
+) -> GroupFit:
+    """Fit the fewest curves of the kept members that explain more than all poles."""
+    whole = group.band(model, len(group.members))
     count, main = len(kept.members), None
     # Two modes taken for one leave far more than all curves, or than all poles.
     limit = linear_residual(decays, whole) if count > 1 else 0.0

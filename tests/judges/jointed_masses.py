@@ -263,11 +263,13 @@ class TrueCurve:
 
     def at(self, mass: int, amplitude: Floats) -> tuple[Floats, Floats]:
         """Return frequency [Hz] and damping ratio where `mass` has that amplitude."""
-        known = np.log(self.amplitude[:, mass])
+        # A joint that softens much has a largest acceleration; curves end there.
+        up = int(np.argmax(self.amplitude[:, mass])) + 1
+        known = np.log(self.amplitude[:up, mass])
         wanted = np.log(amplitude)
         return (
-            np.interp(wanted, known, self.frequency),
-            np.interp(wanted, known, self.damping_ratio),
+            np.interp(wanted, known, self.frequency[:up]),
+            np.interp(wanted, known, self.damping_ratio[:up]),
         )
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Modes over their amplitude, judged on masses with a joint and another integrator."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -28,7 +29,10 @@ from jointbench.analysis.lumped.lumped_model import Body, Link, LumpedModel
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
 from jointbench.signal.amplitude.amplitude_modes import amplitude_modes
+from jointbench.signal.amplitude.group_fits import fit_groups
+from jointbench.signal.amplitude.mode_groups import mode_groups, without_companions
 from jointbench.signal.amplitude.resolved_model import resolved_model
+from jointbench.signal.amplitude.ring_downs import ring_downs
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.modes import identify_modes
@@ -207,6 +211,29 @@ def test_the_onset_of_a_stop_is_followed_at_80_db() -> None:
     assert mode.residual_ratio < 2.0
     assert mode.dependence is Dependence.DEPENDS and mode.curve is not None
     assert mode.laws[0].name == "clearance or opening"
+
+
+def test_a_neighbour_like_a_companion_stays_a_mode() -> None:
+    """A light absorber, one accelerometer: shapes are alike, the pair is linear."""
+    omega, light = 2 * np.pi * 80.0, 3e-4
+    arm = np.array([-1.0, 1.0])
+    spring = light * (1.01 * omega) ** 2
+    damper = 2 * 0.008 * light * omega
+    pair = Structure(
+        np.array([1.0, light]),
+        np.diag([omega**2, 0.0]) + spring * np.outer(arm, arm),
+        np.diag([2 * 0.003 * omega, 0.0]) + damper * np.outer(arm, arm),
+        np.array([1.0, 0.0]),
+        Joint(),
+    )
+    both = struck(pair, LEVELS[::2], 60.0)
+    recording = replace(both, samples=both.samples[:2], channels=both.channels[:2])
+    model = identify_modes(estimate_frf([recording])).model
+    group = mode_groups(model)[0]
+    assert len(group.members) == 2
+    assert len(without_companions(model, group).members) == 1
+    found = fit_groups(ring_downs([recording]), model, [group])[group]
+    assert found is not None and set(found.members) == set(group.members)
 
 
 def test_a_linear_structure_does_not_depend() -> None:
