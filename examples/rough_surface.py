@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Three bent profiles of one surface: form, outliers, filter, pooling, spectrum.
+"""Three bent profiles of one surface: form, outliers, pooling, bands and filters.
 
 Usage: python examples/rough_surface.py
 """
@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import trapezoid
 
+from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.signal.surface.pooled_profiles import pool_profiles
@@ -45,6 +46,13 @@ def main() -> None:
     for words, fit in rows.items():
         number = "no D" if fit.scaling is None else f"D = {fit.dimension:.3f}"
         sys.stdout.write(f"{words}: {fit.verdict.value}, {number}\n")
+    band = fit_band_limited(flat)
+    if band.hurst is not None and band.moments is not None:
+        slope, hurst = band.moments.slope, band.hurst
+        sys.stdout.write(
+            f"{band.verdict.value}: H {hurst.low:.2f} to {hurst.high:.2f}, "
+            f"rms slope {slope.low:.3f} to {slope.high:.3f}\n"
+        )
     for long in (None, 2e-4):
         surface = treated(profiles[0], replace(steps, short=2e-6, long=long))
         spectrum = line_spectrum(surface)

@@ -1,5 +1,9 @@
-"""One BLAS thread, and the limits of a test in CPU time, which a busy machine keeps."""
+"""One BLAS thread, few searches for garbage, and limits of a test in CPU time.
 
+Limits in CPU time hold on a busy machine as well.
+"""
+
+import gc
 import os
 import signal
 from collections.abc import Generator
@@ -20,6 +24,22 @@ MOST_CPU = 20.0
 
 Twice what the slowest of them take, compilation included: machines differ.
 """
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect without the garbage collector, and keep what was collected out of it.
+
+    The half million objects of modules and tests live until the end; the collector
+    would look at each of them again and again (docs/decisions/0213).
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.collect()
+        gc.freeze()
+        gc.enable()
 
 
 class CpuTimeExceeded(Exception):

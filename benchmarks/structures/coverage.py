@@ -17,8 +17,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.analysis.structures.identification.descent import descend
 from jointbench.analysis.structures.identification.multistart import find_optima
+from jointbench.analysis.structures.identification.stiffness_descent import descend
 from jointbench.analysis.structures.identification.stiffness_problem import (
     pose_problem,
     residuals,

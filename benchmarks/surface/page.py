@@ -22,6 +22,12 @@ HEADINGS = {
     "stylus-noise": "Traced by a tip of 2 um with noise of 2 nm: "
     f'`{PRECISION} --setting "stylus and noise"`',
     "verdicts": "Verdicts: `python -m benchmarks.surface.verdicts --seeds N`",
+    "band-limited": "Band-limited surfaces drawn by Cholesky factors, 3,000 points: "
+    "`python -m benchmarks.surface.band_limited --count N --seed N --log PATH`",
+    "roll-off": "Saturated and fractal profiles: "
+    "`python -m benchmarks.surface.roll_off --count 20 --seed 7000`",
+    "measured": "Band-limited fit of measured surfaces: "
+    "`python -m benchmarks.surface.measured FOLDER --columns NAME=COLUMNS`",
     "weierstrass": "Weierstrass-Mandelbrot profiles: "
     "`python -m benchmarks.surface.weierstrass --profiles 100`",
     "figure9": "The 2023 paper's Fig. 9: `python -m benchmarks.surface.figure_9`",

@@ -35,6 +35,7 @@ from jointbench.signal.amplitude.dependence_test import (
     Change,
     DependenceEvidence,
     change_of,
+    curve_holds,
     decide,
     score_chance,
 )
@@ -118,15 +119,25 @@ def _resolved(
     levels: _Levels,
 ) -> list[AmplitudeMode]:
     """Return the modes of one group, merged where curves explain more than poles."""
-    modes = []
+    modes, holds = [], []
     for number, member in enumerate(fitted.members):
         others = [i for i in group.members if i not in fitted.members]
         own = (member, *others) if member == group.members[0] else (member,)
-        modes.append(_judged(decays, model, fitted, number, own, levels[member]))
+        evidence = _evidence(fitted, number, levels[member])
+        modes.append(_judged(decays, model, fitted, number, own, evidence))
+        holds.append(curve_holds(evidence))
     if any(_merged_blindly(mode) for mode in modes):
         words = "the decays do not stand out of the noise"
         return [_undecided(model, i, words) for i in group.members]
-    return modes
+    return [
+        mode if held or mode.dependence is not Dependence.NOT_DECIDED else _bare(mode)
+        for mode, held in zip(modes, holds, strict=True)
+    ]
+
+
+def _bare(mode: AmplitudeMode) -> AmplitudeMode:
+    """Return a mode without its curve, whose band does not know what is missing."""
+    return replace(mode, curve=None)
 
 
 def _merged_blindly(mode: AmplitudeMode) -> bool:
@@ -142,32 +153,39 @@ def _levels_at(
     return compare_levels(spectra, float(frequency), float(ratio))
 
 
+def _evidence(
+    fitted: GroupFit, number: int, levels: tuple[float | None, str]
+) -> DependenceEvidence:
+    """Return what speaks for and against the dependence of one mode."""
+    main = fitted.main
+    curve = level_curve(main, number)
+    after = None if fitted.later is None else level_curve(fitted.later, number)
+    change = change_of(curve)
+    return DependenceEvidence(
+        chance=score_chance(main, number),
+        explained=main.share_explained,
+        linear_residual_ratio=main.linear.residual_ratio,
+        residual_ratio=main.curved.residual_ratio,
+        change=change,
+        later=_later_change(curve, after, change),
+        levels=levels[0],
+        levels_words=levels[1],
+    )
+
+
 def _judged(
     decays: RingDowns,
     model: ModalModel,
     fitted: GroupFit,
     number: int,
     members: tuple[int, ...],
-    levels: tuple[float | None, str],
+    evidence: DependenceEvidence,
 ) -> AmplitudeMode:
     """Return one mode with curve, outcome and laws."""
-    main = fitted.main
+    main, change = fitted.main, evidence.change
     curve = level_curve(main, number)
     after = None if fitted.later is None else level_curve(fitted.later, number)
-    change = change_of(curve)
-    chance = score_chance(main, number)
-    outcome, reason = decide(
-        DependenceEvidence(
-            chance=chance,
-            explained=main.share_explained,
-            linear_residual_ratio=main.linear.residual_ratio,
-            residual_ratio=main.curved.residual_ratio,
-            change=change,
-            later=_later_change(curve, after, change),
-            levels=levels[0],
-            levels_words=levels[1],
-        )
-    )
+    outcome, reason = decide(evidence)
     nothing = np.zeros(curve.level.size)
     shift = (nothing, nothing) if after is None else shift_between(curve, after)
     shown = amplitude_curve(curve, decays, shift)
@@ -191,7 +209,7 @@ def _judged(
         reason=reason,
         curve=shown,
         soft=soft,
-        significance=chance,
+        significance=evidence.chance,
         residual_ratio=main.curved.residual_ratio,
         linear_residual_ratio=main.linear.residual_ratio,
         frequency_change=change.frequency if change else 0.0,

@@ -24,10 +24,14 @@ from jointbench.signal.amplitude.start_values import (
 
 # Decays are taken this many time constants long: e^-12 is below any noise.
 _TIME_CONSTANTS = 12.0
-# Knots in ln a that are tried; the better by N ln chi2 + 2 edf is kept.
-_PITCHES = (0.5, 0.25)
+# Knots in ln a that are tried in turn, while N ln chi2 + 2 edf falls. The finest ones
+# follow the onset of slip or contact at 80 dB (docs/decisions/0191).
+_PITCHES = (0.5, 0.25, 0.12, 0.06)
 # Finer knots are tried where a curve uses this share of its functions.
 _STIFF = 0.5
+# The finest knots are tried where the last ones left this share of chi-squared at most:
+# where the model itself does not hold, they cost much and help little.
+_HELPED = 0.5
 # First curves: the last step gains this share; above this residual ratio a second
 # start is tried.
 _NEAR, _POOR = 1e-3, 3.0
@@ -100,14 +104,41 @@ def fit_band(decays: RingDowns, band: Band) -> BandFit:
         for mode, own in zip(start, linear.modes, strict=True)
     )
     curved = fit_jointly(quiet, start, power)
-    if _is_stiff(curved):
+    return _refined(BandFit(quiet, linear, curved, power))
+
+
+def _refined(fit: BandFit) -> BandFit:
+    """Return the fit with finer knots, as far as they explain more.
+
+    The noise is estimated again after each refinement: what coarse knots left late in
+    the decays counted as noise.
+    """
+    for pitch in _PITCHES[1:]:
+        if not _is_stiff(fit.curved):
+            break
         finer = tuple(
-            with_knots(mode, own.basis, _PITCHES[1])
-            for mode, own in zip(curved.modes, linear.modes, strict=True)
+            with_knots(mode, own.basis, pitch)
+            for mode, own in zip(fit.curved.modes, fit.linear.modes, strict=True)
         )
-        tried = fit_jointly(quiet, finer, power)
-        curved = min((curved, tried), key=criterion)
-    return BandFit(quiet, linear, curved, power)
+        tried = fit_jointly(fit.lines, finer, fit.power)
+        if criterion(tried) >= criterion(fit.curved):
+            break
+        helped = tried.chi2 < _HELPED * fit.curved.chi2
+        fit = _requieted(replace(fit, curved=tried))
+        if not helped:
+            break
+    return fit
+
+
+def _requieted(fit: BandFit) -> BandFit:
+    """Return both fits with the noise that the curves leave."""
+    lines = rewhitened(fit.lines, fit.curved.residual)
+    linear, curved = (
+        fit_jointly(lines, carried_over(one.modes, fit.lines, lines), fit.power)
+        for one in (fit.linear, fit.curved)
+    )
+    modes = tuple(refresh_range(lines, mode) for mode in linear.modes)
+    return replace(fit, lines=lines, linear=replace(linear, modes=modes), curved=curved)
 
 
 def fit_later(decays: RingDowns, band: Band, first: BandFit, delay: float) -> BandFit:

@@ -221,6 +221,19 @@ def decide(found: DependenceEvidence) -> tuple[Dependence, str]:
     )
 
 
+def curve_holds(found: DependenceEvidence) -> bool:
+    """Return whether nothing speaks against the curve itself.
+
+    False where much of the excess residual stays, or where a later start gives another
+    change: a neighbour may be missing, and the band of the curve does not know it.
+    """
+    unexplained = found.linear_residual_ratio > _EXCESS and found.explained < _EXPLAINED
+    change = found.change
+    if unexplained or change is None or found.later is None:
+        return not unexplained
+    return not change.matters or _same(change, found.later)
+
+
 def _doubts(found: DependenceEvidence, change: Change) -> tuple[str, ...]:
     """Return what speaks against a dependence that the score test reports."""
     words = []

@@ -22,8 +22,8 @@ _ORDERS = (2, 3)
 # displacement than this share of it.
 _CLOSE, _WEAKER = 0.005, 0.05
 # Modes this close beat on a joint; the larger change of frequency may be this share of
-# their distance.
-_BESIDE, _BEAT = 0.1, 0.02
+# their distance (docs/decisions/0192).
+_BESIDE, _BEAT = 0.1, 0.012
 
 
 def with_doubts(found: Sequence[AmplitudeMode]) -> tuple[AmplitudeMode, ...]:
@@ -37,9 +37,10 @@ def with_doubts(found: Sequence[AmplitudeMode]) -> tuple[AmplitudeMode, ...]:
 
 def _doubted(mode: AmplitudeMode, found: Sequence[AmplitudeMode]) -> AmplitudeMode:
     for other in found:
-        if other is mode or not _depends(mode) or not _depends(other):
+        if other is mode or not _depends(mode) or other.curve is None:
             continue
-        words = _harmonic(mode, other) or _beat(mode, other)
+        beat = _beat(mode, other)
+        words = (_harmonic(mode, other) if _depends(other) else "") or beat
         if words:
             return replace(
                 mode,
@@ -47,6 +48,8 @@ def _doubted(mode: AmplitudeMode, found: Sequence[AmplitudeMode]) -> AmplitudeMo
                 reason=words,
                 family="",
                 laws=(),
+                # The band of a curve does not know what a beat moves.
+                curve=None if beat else mode.curve,
             )
     return mode
 

@@ -25,6 +25,9 @@ _DELAY, _DELAY_SHARE = 0.05, 0.7
 _LEAST_DELAYS = 4
 # Above this residual ratio the fit from a later start is taken, where it is better.
 _UNEASY = 2.0
+# There the wide band is tried where all but this share of the linear excess is gone:
+# the curves hold, and only the band is too narrow for hard decays.
+_NEARLY = 1e-3
 # Fewer curves may leave this much more power than all of them.
 _FEWER = 2.0
 # Rounds in which groups see the curves of the others.
@@ -39,11 +42,13 @@ class GroupFit:
         main: what is reported.
         later: the same modes from a later start; None where records are too short.
         members: poles that began the curves, indices into the modes.
+        wide: whether the wide band was fitted.
     """
 
     main: BandFit
     later: BandFit | None
     members: tuple[int, ...]
+    wide: bool = False
 
 
 def fit_groups(
@@ -101,7 +106,12 @@ def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> GroupF
             count, main = fewer, tried
             break
     main = main or best or fit_band(decays, kept.band(model, count))
-    return GroupFit(main, None, tuple(sorted(kept.members[:count])))
+    members = tuple(sorted(kept.members[:count]))
+    if main.curved.residual_ratio > _UNEASY and main.share_explained > 1.0 - _NEARLY:
+        wide = fit_band(decays, kept.band(model, count, wide=True))
+        if wide.curved.residual_ratio < main.curved.residual_ratio:
+            return GroupFit(wide, None, members, wide=True)
+    return GroupFit(main, None, members)
 
 
 def _together(
@@ -130,7 +140,7 @@ def _begun_later(
     decays: RingDowns, model: ModalModel, group: ModeGroup, fit: GroupFit
 ) -> GroupFit:
     """Return the fit with the same from a later start, or from two where it is poor."""
-    band = group.band(model, len(fit.members))
+    band = group.band(model, len(fit.members), wide=fit.wide)
     delay = min(_DELAY, _DELAY_SHARE / band.slowest)
     if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
         return fit
@@ -139,7 +149,7 @@ def _begun_later(
         later = fit_later(decays, band, fit.main, delay)
         if main > _UNEASY and later.curved.residual_ratio < main:
             last = fit_later(decays, band, fit.main, 2 * delay)
-            return GroupFit(later, last, fit.members)
+            return replace(fit, main=later, later=last)
     except np.linalg.LinAlgError:
         return fit
-    return GroupFit(fit.main, later, fit.members)
+    return replace(fit, later=later)

@@ -19,6 +19,9 @@ _CLOSE, _CLOSE_WIDTHS = 0.07, 8.0
 # A band reaches this many halves of the half-power width beyond its poles, and at
 # least this many where a stronger neighbour cuts it.
 _REACH, _LEAST_REACH = 14.0, 5.0
+# A wide band reaches this share of the frequency beyond its poles: where damping grows
+# with amplitude, hard decays are broader than the poles (docs/decisions/0191).
+_WIDE_SHARE = 0.25
 # Neighbours whose flanks are taken along: within this many bandwidths, at most so many.
 _FLANK, _MOST_BESIDE = 2.0, 3
 # A pole broader than this is background, not a neighbour.
@@ -38,20 +41,23 @@ class ModeGroup:
         low: of the band [Hz].
         high: of the band [Hz].
         beside: poles outside whose flanks reach in [rad/s].
+        wide: lowest and highest frequency of the wide band [Hz].
     """
 
     members: tuple[int, ...]
     low: float
     high: float
     beside: tuple[complex, ...]
+    wide: tuple[float, float]
 
-    def band(self, model: ModalModel, count: int) -> Band:
-        """Return the band with the `count` strongest members as modes."""
+    def band(self, model: ModalModel, count: int, *, wide: bool = False) -> Band:
+        """Return the band, or the wide one, with the `count` strongest members."""
         poles = model.poles
         chosen = sorted(self.members[:count])
+        low, high = self.wide if wide else (self.low, self.high)
         return Band(
-            self.low,
-            self.high,
+            low,
+            high,
             tuple(complex(poles[i]) for i in chosen),
             self.beside,
             # That of the strongest member, so that all fits see the same lines.
@@ -101,16 +107,11 @@ def _group(
     frequency, ratio = model.natural_frequency, model.damping_ratio
     width = float(ratio[members[0]] * frequency[members[0]])
     own = frequency[members]
-    low, high = own.min() - _REACH * width, own.max() + _REACH * width
     heads = np.array([m[0] for m in every if m[0] != members[0]], int)
     strong = heads[strength[heads] > 1e-3 * strength[members[0]]]
-    for other in frequency[strong]:
-        middle = 0.5 * (other + own[0])
-        if low < other < own[0]:
-            low = min(middle, own.min() - _LEAST_REACH * width)
-        if own[0] < other < high:
-            high = max(middle, own.max() + _LEAST_REACH * width)
-    low = max(low, 0.3 * own.min())
+    cuts = frequency[strong]
+    low, high = _reached(own, _REACH * width, width, cuts)
+    wide = _reached(own, max(_REACH * width, _WIDE_SHARE * own[0]), width, cuts)
     span = high - low
     gap = np.maximum(low - frequency[heads], frequency[heads] - high)
     flank = heads[(gap < _FLANK * span) & (ratio[heads] < _BROAD)]
@@ -120,7 +121,29 @@ def _group(
         low=float(low),
         high=float(high),
         beside=tuple(complex(p) for p in model.poles[flank]),
+        wide=wide,
     )
+
+
+def _reached(
+    own: FloatArray, reach: float, width: float, cuts: FloatArray
+) -> tuple[float, float]:
+    """Return the ends of a band [Hz].
+
+    Args:
+        own: frequencies of its poles, the strongest first [Hz].
+        reach: beyond them [Hz].
+        width: half the half-power width of the strongest [Hz].
+        cuts: frequencies of strong neighbours, half-way to which a band ends [Hz].
+    """
+    low, high = own.min() - reach, own.max() + reach
+    for other in cuts:
+        middle = 0.5 * (other + own[0])
+        if low < other < own[0]:
+            low = min(middle, own.min() - _LEAST_REACH * width)
+        if own[0] < other < high:
+            high = max(middle, own.max() + _LEAST_REACH * width)
+    return float(max(low, 0.3 * own.min())), float(high)
 
 
 def without_companions(model: ModalModel, group: ModeGroup) -> ModeGroup:

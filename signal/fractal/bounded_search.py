@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 
 _MOST_STEPS = 40
 """Most steps of one search; fits of a surface take about 10 [-]."""
@@ -57,16 +57,15 @@ def search(
         Levenberg-Marquardt with the damping relative to the curvature: Marquardt,
         SIAM J. Appl. Math. 11 (1963) 431. Parameters at an active bound are fixed.
     """
-    here = np.clip(start, lower, upper)
+    here = _within(start, lower, upper)
     gap = residual(here)
     squares, damping = float(gap @ gap), _FIRST_DAMPING
     for _ in range(_MOST_STEPS):
         jacobian = _jacobian(residual, here, gap, upper)
+        normal = _normal_equations(jacobian, gap, here, lower, upper)
         best = squares
         for _ in range(_MOST_TRIALS):
-            there = np.clip(
-                here + _step(jacobian, gap, damping, here, lower, upper), lower, upper
-            )
+            there = _within(here + _step(normal, damping), lower, upper)
             trial = residual(there)
             cost = float(trial @ trial)
             if cost < squares:
@@ -93,22 +92,51 @@ def _jacobian(
     return columns
 
 
-def _step(
+@dataclass(frozen=True, slots=True, eq=False)
+class _NormalEquations:
+    """Normal equations of the free parameters, each scaled by its column.
+
+    Attributes:
+        free: parameters that are not at an active bound, shape (n_parameters,).
+        size: norm of the columns of the free ones, shape (n_free,).
+        curvature: shape (n_free, n_free).
+        descent: minus the gradient, shape (n_free,).
+    """
+
+    free: BoolArray
+    size: FloatArray
+    curvature: FloatArray
+    descent: FloatArray
+
+
+def _normal_equations(
     jacobian: FloatArray,
     gap: FloatArray,
-    damping: float,
     here: FloatArray,
     lower: FloatArray,
     upper: FloatArray,
-) -> FloatArray:
-    """Return the damped step of the free parameters."""
+) -> _NormalEquations:
+    """Return what the steps of all dampings have in common."""
     slope = jacobian.T @ gap
     free = ~(((here <= lower) & (slope > 0)) | ((here >= upper) & (slope < 0)))
-    size = np.linalg.norm(jacobian, axis=0)
-    free &= size > 0
-    step = np.zeros(here.size)
-    if free.any():
-        scaled = jacobian[:, free] / size[free]
-        curvature = scaled.T @ scaled + damping * np.eye(int(free.sum()))
-        step[free] = np.linalg.solve(curvature, -slope[free] / size[free]) / size[free]
+    norm = np.sqrt((jacobian * jacobian).sum(axis=0))
+    free &= norm > 0
+    size = norm[free]
+    scaled = jacobian[:, free] / size
+    return _NormalEquations(free, size, scaled.T @ scaled, -slope[free] / size)
+
+
+def _step(normal: _NormalEquations, damping: float) -> FloatArray:
+    """Return the damped step of the free parameters."""
+    step = np.zeros(normal.free.size)
+    if normal.size.size:
+        curvature = normal.curvature.copy()
+        curvature.flat[:: normal.size.size + 1] += damping
+        step[normal.free] = np.linalg.solve(curvature, normal.descent) / normal.size
     return step
+
+
+def _within(values: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Return values within their bounds; `numpy.clip` takes longer to be called."""
+    within: FloatArray = np.minimum(np.maximum(values, lower), upper)
+    return within

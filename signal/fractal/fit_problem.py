@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The fit of a model to a structure function: data, lags and covariance."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -41,6 +42,9 @@ class FractalProblem:
         pivot: geometric middle of the lags [samples].
         axes: directions in which the instrument acts: 2 on a map with related rows.
         least: smallest value of the structure function [m^2].
+        log_pivot: natural logarithm of `pivot`.
+        points: of a profile [-].
+        loss_share: loss by levelling over that by a mean line [-].
         form_of: form of the structure function at the lags; a search moves one
             parameter at a time, and most of them leave the form as it is.
         unit_loss: loss by levelling at the lags, for an exponent.
@@ -53,15 +57,22 @@ class FractalProblem:
     pivot: float = field(init=False)
     axes: int = field(init=False)
     least: float = field(init=False)
+    log_pivot: float = field(init=False)
+    points: float = field(init=False)
+    loss_share: float = field(init=False)
     form_of: Callable[[SeenForm], FloatArray] = field(init=False)
     unit_loss: Callable[[float], FloatArray] = field(init=False)
 
     def __post_init__(self) -> None:
         """Work out the lags once: a search looks at them thousands of times."""
         lag = read_only(self.estimate.lag / self.estimate.spacing)
-        share = lag / float(self.estimate.points)
+        points = float(self.estimate.points)
+        share, part = lag / points, 1.0 if self.estimate.separate else PLANE_LOSS
         object.__setattr__(self, "lag", lag)
         object.__setattr__(self, "pivot", float(np.sqrt(lag[0] * lag[-1])))
+        object.__setattr__(self, "log_pivot", math.log(self.pivot))
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "loss_share", part)
         object.__setattr__(self, "axes", _axes(self.estimate))
         object.__setattr__(self, "least", float(self.estimate.value.min()))
         object.__setattr__(
@@ -77,8 +88,7 @@ class FractalProblem:
         A surface with a corner within the profile has a smaller slope, and so a smaller
         loss.
         """
-        points = float(self.estimate.points)
-        part = 1.0 if self.estimate.separate else PLANE_LOSS
+        points, part = self.points, self.loss_share
         unit = self.unit_loss(seen.exponent)
         power = seen.amplitude * points**seen.exponent
         if np.isfinite(seen.corner):

@@ -211,7 +211,7 @@ def _unpack(
     noise = rest.pop(0) if instrument.has_noise else 0.0
     return SeenSurface(
         exponent=exponent,
-        amplitude=math.exp(level - exponent * math.log(problem.pivot)),
+        amplitude=math.exp(level - exponent * problem.log_pivot),
         noise=0.5 * noise * problem.least,
         psf_width=rest.pop(0) if instrument.has_psf else 0.0,
         axes=problem.axes,

@@ -39,8 +39,8 @@ _NEXT_TO_ZERO = 0.1
 _WHOLE = 1e-9
 # Keeps the normal equations definite where clean data leave them singular.
 _RIDGE = 1e-14
-# Spectra per transform: fast, and small compared with the FRF itself.
-_SERIES_AT_ONCE = 128
+# Spectra per transform: all that is made of them stays in the cache of one core.
+_SERIES_AT_ONCE = 16
 Progress = Callable[[str, float], None]
 """Called with the current step and its completed share [-]."""
 # Inputs for which null vectors need no decomposition.

@@ -23,6 +23,8 @@ _SWEEPS = 30
 _TRACE_ERROR = 1e-9
 # Below this many roots a companion matrix is as fast.
 _FEW = 8
+# Inputs for which the determinant is written out.
+_PAIR = 2
 
 
 def inverse_roots(
@@ -89,13 +91,7 @@ def _polish(
             if not moving[i]:
                 continue
             root = roots[i]
-            push = 0.0j
-            for j in range(roots.size):
-                if j != i:
-                    away = root - roots[j]
-                    square = away.real * away.real + away.imag * away.imag
-                    push += away.conjugate() / square
-            slope = _slope(denominator, root) - push
+            slope = _slope(denominator, root) - _push(roots, i)
             square = slope.real * slope.real + slope.imag * slope.imag
             # An infinite slope is at a root; a NaN has failed.
             change = slope.conjugate() / square if square < np.inf else 0.0j
@@ -112,6 +108,19 @@ def _polish(
 
 
 @compiled(error_model="numpy")
+def _push(roots: ComplexArray, i: int) -> complex:
+    """Return the sum of 1 / (root i - root j) over all others, in real numbers."""
+    root, along, across = roots[i], 0.0, 0.0
+    for j in range(roots.size):
+        if j != i:
+            away = root - roots[j]
+            inverse = 1.0 / (away.real * away.real + away.imag * away.imag)
+            along += away.real * inverse
+            across -= away.imag * inverse
+    return complex(along, across)
+
+
+@compiled(error_model="numpy")
 def _slope(denominator: ComplexArray, root: complex) -> complex:
     """Return d/du log det B(u), B(u) = u^n I + A_1 u^(n - 1) + ... + A_n.
 
@@ -119,10 +128,13 @@ def _slope(denominator: ComplexArray, root: complex) -> complex:
     power can overflow.
     """
     order, width = denominator.shape[0] - 1, denominator.shape[1]
-    value = np.zeros((width, width), np.complex128)
-    slope = np.zeros((width, width), np.complex128)
     inside = abs(root) <= 1.0
     point = root if inside else 1.0 / root
+    if width == _PAIR:
+        trace = _pair_slope(denominator, point, inside)
+        return trace if inside else complex(point * (order * width - point * trace))
+    value = np.zeros((width, width), np.complex128)
+    slope = np.zeros((width, width), np.complex128)
     for k in range(order + 1):
         row = k if inside else order - k
         for i in range(width):
@@ -130,9 +142,27 @@ def _slope(denominator: ComplexArray, root: complex) -> complex:
                 slope[i, j] = slope[i, j] * point + value[i, j]
                 value[i, j] = value[i, j] * point + denominator[row, i, j]
     trace = _log_slope(value, slope)
-    if inside:
-        return trace
-    return complex(point * (order * width - point * trace))
+    return trace if inside else complex(point * (order * width - point * trace))
+
+
+@compiled(error_model="numpy")
+def _pair_slope(denominator: ComplexArray, point: complex, inside: bool) -> complex:
+    """Return trace(value^-1 slope) for two inputs, all numbers in registers."""
+    order = denominator.shape[0] - 1
+    a = b = c = d = 0.0j
+    da = db = dc = dd = 0.0j
+    for k in range(order + 1):
+        row = k if inside else order - k
+        da, db = da * point + a, db * point + b
+        dc, dd = dc * point + c, dd * point + d
+        a = a * point + denominator[row, 0, 0]
+        b = b * point + denominator[row, 0, 1]
+        c = c * point + denominator[row, 1, 0]
+        d = d * point + denominator[row, 1, 1]
+    determinant = a * d - b * c
+    if determinant == 0.0:
+        return complex(np.inf, 0.0)
+    return complex((d * da - c * db - b * dc + a * dd) / determinant)
 
 
 @compiled(error_model="numpy")

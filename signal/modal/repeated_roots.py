@@ -29,6 +29,7 @@ from jointbench.signal.modal.residual_search.second_modes import (
     SecondModes,
     peak_members,
     second_modes,
+    without_third,
 )
 from jointbench.signal.modal.second_mode_words import second_mode_words
 
@@ -76,6 +77,7 @@ def separate_repeated(
         members = members[np.isin(row_of[members], list(left))]
         found = second_modes(sides, members)
         if found.accepted:
+            found = without_third(sides, found)
             gone, members = row_of[found.replaced].tolist(), found.members
             used = np.append(np.ones(2 * found.count, bool), found.stayed)
             pieces.append(_rows_of(model, row_of[members], sides, found, used))

@@ -129,6 +129,7 @@ def _independent_lines(waves: ComplexArray, starts: IntArray) -> FloatArray:
     """
     lines = waves.shape[0]
     power = np.add.reduceat(np.mean(np.abs(waves) ** 2, axis=0), starts)
+    power = np.maximum(power, np.finfo(np.float64).tiny)  # of a flat map
     widths = np.diff(np.append(starts, waves.shape[1]))
     total = np.zeros(starts.size)
     apart = np.unique(np.geomspace(1, max(1, lines - 1), 16).astype(np.int64))

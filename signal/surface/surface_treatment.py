@@ -66,6 +66,18 @@ def treated(surface: Surface, treatment: SurfaceTreatment) -> Surface:
     return surface
 
 
+def outside_filters(estimate: StructureFunction, surface: Surface) -> StructureFunction:
+    """Return S at the lags of which the filter of the instrument leaves the surface.
+
+    At lags below a stated lambda_s the slope of S is that of the filter; a blur is
+    fitted to what it takes from longer ones.
+    """
+    cutoff = surface.instrument.cutoff_short
+    if cutoff is None or not (estimate.lag >= cutoff).any():
+        return estimate
+    return estimate.only(estimate.lag >= cutoff)
+
+
 def treated_structure(
     surface: Surface, treatment: SurfaceTreatment
 ) -> tuple[Surface, StructureFunction]:

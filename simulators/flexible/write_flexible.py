@@ -24,7 +24,11 @@ from jointbench.simulators.flexible.joint_values import (
     MODULUS_SIGMA,
     STIFFNESS_SIGMA,
 )
-from jointbench.simulators.flexible.physical_bodies import PhysicalBody
+from jointbench.simulators.flexible.physical_bodies import (
+    FREQUENCY_ERRORS,
+    SHAPE_ERROR,
+    PhysicalBody,
+)
 from jointbench.simulators.flexible.sensor_chain import COUNT, FULL_SCALE, sensitivities
 
 CAMPAIGN_SCHEMA, NOMINAL_SCHEMA = "campaign/1", "bench-sheet/1"
@@ -163,7 +167,18 @@ def known_bench(bench: FlexibleBench) -> Json:
             "rel_sigma": {"k": FEET_SIGMA, "c": DAMPING_SIGMA},
             "note": "isotropic spring and damper at each foot",
         },
-        "modal_table": {"world": bench.world},
+        "modal_table": _known_table(bench.world),
+    }
+
+
+def _known_table(world: str) -> Json:
+    """Return the uncertainty of the modal table as a crew would state it."""
+    if world == "exact":
+        return {"world": world}
+    return {
+        "world": world,
+        "frequency_rel_sigma": float(np.sqrt(np.prod(FREQUENCY_ERRORS))),
+        "shape_rel_sigma": SHAPE_ERROR,
     }
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.simulators.mechanics.joint_laws import (
     LawArrays,
@@ -58,31 +58,37 @@ def integrate(
             ahead = 0.5 * step * ((stage + 1) // 2)
             for i in range(state.size):
                 trial[i] = state[i] + ahead * slopes[stage, i]
-            rate, push = slopes[stage + 1], force[2 * n + (stage + 1) // 2]
-            _linear_rate(inverse_mass, stiffness, damping, trial, body, push, rate)
+            row, push = stage + 1, force[2 * n + (stage + 1) // 2]
+            _linear_rate(
+                inverse_mass, stiffness, damping, trial, body, push, slopes, row
+            )
             for i in range(kinds.size):
-                first, second = ends[i]
+                # No views of arrays: each would change a reference count.
+                first, second = ends[i, 0], ends[i, 1]
                 r = _difference(trial, first, second)
-                v = _difference(trial[size:], first, second)
-                w = trial[2 * size + i]
+                v = _difference(trial, first, second, size)
+                w, p = trial[2 * size + i], _parameters(numbers, i)
                 if kinds[i] == LawKind.SLIDERS:
                     moved = r - _difference(state, first, second)
+                    bank = (banks[i, 0], banks[i, 1])
                     attraction = _bank_force(
-                        moved, banks[i], sliders, memory, tables[i], table_step[i]
+                        moved, bank, sliders, memory, tables[i], table_step[i]
                     )
                 else:
                     now = begin + n * step + ahead
-                    attraction = law_force(kinds[i], numbers[i], r, v, w, now)
-                rate[size + second] -= attraction * inverse_mass[second]
+                    attraction = law_force(kinds[i], p, r, v, w, now)
+                slopes[row, size + second] -= attraction * inverse_mass[second]
                 if first >= 0:
-                    rate[size + first] += attraction * inverse_mass[first]
-                rate[2 * size + i] = state_rate(kinds[i], numbers[i], v, w)
+                    slopes[row, size + first] += attraction * inverse_mass[first]
+                slopes[row, 2 * size + i] = state_rate(kinds[i], p, v, w)
         for i in range(size):
             acceleration[i, n] = slopes[1, size + i]
         _advance(step, slopes, state, trial)
         for i in range(kinds.size):
-            moved = _difference(trial, ends[i, 0], ends[i, 1])
-            _move_bank(moved, banks[i], sliders, memory, tables[i], table_step[i])
+            if kinds[i] == LawKind.SLIDERS:
+                moved = _difference(trial, ends[i, 0], ends[i, 1])
+                bank = (banks[i, 0], banks[i, 1])
+                _move_bank(moved, bank, sliders, memory, tables[i], table_step[i])
     return acceleration
 
 
@@ -105,30 +111,52 @@ def _linear_rate(
     state: FloatArray,
     body: int,
     push: float,
-    rate: FloatArray,
+    slopes: FloatArray,
+    row: int,
 ) -> None:
-    """Fill `rate` with velocities and with accelerations of the linear links."""
+    """Fill a row with velocities and with accelerations of the linear links."""
     size = inverse_mass.size
     for i in range(size):
         total = push if i == body else 0.0
         for j in range(size):
             total -= stiffness[i, j] * state[j] + damping[i, j] * state[size + j]
-        rate[i] = state[size + i]
-        rate[size + i] = total * inverse_mass[i]
+        slopes[row, i] = state[size + i]
+        slopes[row, size + i] = total * inverse_mass[i]
 
 
 @compiled(error_model="numpy")
-def _difference(values: FloatArray, first: int, second: int) -> float:
-    """Return the displacement of body `second` relative to `first` or the ground."""
+def _difference(values: FloatArray, first: int, second: int, offset: int = 0) -> float:
+    """Return the motion of body `second` relative to `first` or the ground.
+
+    Args:
+        values: displacements, then velocities.
+        first: index of a body, or -1 for the ground.
+        second: index of the other body.
+        offset: number of bodies for the velocity; 0 for the displacement.
+    """
     if first < 0:
-        return float(values[second])
-    return float(values[second] - values[first])
+        return float(values[offset + second])
+    return float(values[offset + second] - values[offset + first])
+
+
+@compiled(error_model="numpy")
+def _parameters(
+    numbers: FloatArray, law: int
+) -> tuple[float, float, float, float, float]:
+    """Return the parameters of a law."""
+    return (
+        numbers[law, 0],
+        numbers[law, 1],
+        numbers[law, 2],
+        numbers[law, 3],
+        numbers[law, 4],
+    )
 
 
 @compiled(error_model="numpy")
 def _bank_force(
     moved: float,
-    bank: IntArray,
+    bank: tuple[int, int],
     sliders: FloatArray,
     memory: FloatArray,
     table: FloatArray,
@@ -147,7 +175,7 @@ def _bank_force(
 @compiled(error_model="numpy")
 def _move_bank(
     moved: float,
-    bank: IntArray,
+    bank: tuple[int, int],
     sliders: FloatArray,
     memory: FloatArray,
     table: FloatArray,

@@ -18,6 +18,7 @@ from jointbench.station.gap.curve_section import curve_section
 from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
+from jointbench.station.gap.structure_plan import with_structure
 from jointbench.station.report.gap_report import gap_report
 from jointbench.station.report.packages_section import packages_section
 from jointbench.station.schemas.effects_file import read_effects, with_own
@@ -75,6 +76,7 @@ def run_gap(
     _show(done, packages, json_target)
     if report is not None:
         content = gap_report(done.found, title=done.title)
+        content = with_structure(content, done.plan, done.found)
         if done.scores:
             section = score_section(done.scores, done.unit)
             content = replace(content, sections=(*content.sections, section))

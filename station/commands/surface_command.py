@@ -4,19 +4,24 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from rich.console import Console
+
 from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.verdict_records import FractalFit
+from jointbench.signal.surface.surface_treatment import SurfaceTreatment
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.structure_map_file import write_structure_map
 from jointbench.station.pipeline.pooled_surface import pooled_beside, pooled_structure
 from jointbench.station.pipeline.roughness_words import (
     HEADING,
     roughness_words,
 )
-from jointbench.station.pipeline.structure_map_file import write_structure_map
+from jointbench.station.pipeline.surface_json import fit_json, surface_json
 from jointbench.station.pipeline.surface_options import (
     PLAIN,
     SurfaceOptions,
@@ -27,9 +32,15 @@ from jointbench.station.pipeline.surface_stages import (
     SurfaceChain,
     analyse_surface,
     chain_cautions,
-    fit_json,
-    surface_json,
+    with_band,
     with_remedy,
+)
+from jointbench.station.screen.band_limited_words import (
+    COLUMNS,
+    TITLE,
+    band_json,
+    band_lines,
+    band_row,
 )
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.value_text import engineering, with_sd
@@ -56,12 +67,13 @@ def run_surface(
     results: list[dict[str, object]] = []
     for path, surface in read:
         with working(f"fitting {surface.name}"):
-            chain = with_remedy(analyse_surface(surface, options), surface, options)
+            fitted = with_band(analyse_surface(surface, options), options)
+            chain = with_remedy(fitted, surface, options)
         if options.structure_map is not None:
             write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
         results.append({"file": str(path)} | surface_json(chain))
-    pooled = _pooled(given, chains) if options.pool else None
+    pooled = _pooled(given, chains, options.treatment) if options.pool else None
     show_surfaces(chains, json_target, pooled)
     found: dict[str, object] = {"files": results}
     if pooled is not None:
@@ -91,18 +103,40 @@ def show_surfaces(
         screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
         for line in chain.beside.lines:
             screen.print(f"  {chain.surface.name}: {line}", markup=False)
+    _show_bands(screen, chains, pooled)
     if pooled is not None:
         for line in (pooled.fit.reason, *pooled.beside.lines):
             screen.print(f"  {pooled.structure.name}: {line}", markup=False)
 
 
-def _pooled(given: Sequence[Surface], chains: Sequence[SurfaceChain]) -> Pooled:
+def _show_bands(
+    screen: Console, chains: Sequence[SurfaceChain], pooled: Pooled | None
+) -> None:
+    """Print the band-limited surface of each chain, and of all profiles as one."""
+    found = [(c.surface.name, c.band, c.no_band) for c in chains]
+    if pooled is not None:
+        found.append((pooled.structure.name, pooled.band, None))
+    rows = [band_row(name, band) for name, band, _ in found]
+    screen.print(table(TITLE, COLUMNS, rows))
+    for name, band, reason in found:
+        for line in band_lines(band, reason):
+            screen.print(f"  {name}: {line}", markup=False)
+
+
+def _pooled(
+    given: Sequence[Surface],
+    chains: Sequence[SurfaceChain],
+    treatment: SurfaceTreatment,
+) -> Pooled:
     """Fit all profiles together."""
     with working("fitting the pooled profiles"):
         structure = pooled_structure(given, [chain.surface for chain in chains])
         fit = fit_fractal(structure)
+        band = fit_band_limited(
+            [chain.surface for chain in chains], degree=treatment.form or 1
+        )
     dimensions = [chain.fit.dimension for chain in chains]
-    return Pooled(structure, fit, pooled_beside(structure, dimensions))
+    return Pooled(structure, fit, pooled_beside(structure, dimensions), band)
 
 
 def _pooled_json(pooled: Pooled, chains: Sequence[SurfaceChain]) -> dict[str, object]:
@@ -111,6 +145,7 @@ def _pooled_json(pooled: Pooled, chains: Sequence[SurfaceChain]) -> dict[str, ob
     return {
         **fit_json(pooled.structure.name, pooled.fit, tuple(notes)),
         "profiles": [chain.surface.name for chain in chains],
+        "band_limited": band_json(pooled.band, None),
         **dict(pooled.beside.keys),
     }
 

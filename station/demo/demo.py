@@ -33,7 +33,7 @@ from jointbench.station.files.toml_file import read_toml
 from jointbench.station.pipeline.contact_prediction import contact_json
 from jointbench.station.pipeline.modal_notes import modal_notes
 from jointbench.station.pipeline.modal_summary import modal_json
-from jointbench.station.pipeline.surface_stages import surface_json
+from jointbench.station.pipeline.surface_json import surface_json
 from jointbench.station.report.joint_section import side_by_side
 from jointbench.station.report.modal_table import show_modal
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session

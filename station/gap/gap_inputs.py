@@ -38,7 +38,8 @@ from jointbench.station.gap.measured_curves import (
     curves_of_recordings,
 )
 from jointbench.station.gap.record_campaign import read_record
-from jointbench.station.gap.structure_files import examine_structure
+from jointbench.station.gap.structure_files import examine_structure, nominal_beside
+from jointbench.station.gap.structure_plan import StructurePlan, read_plan
 from jointbench.station.pipeline.chain import hits_stage
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.pipeline.judge_again import StoredHits, with_hits
@@ -86,6 +87,7 @@ class Examined:
         scores: on parts of a long record that no fit has seen.
         unit: of the scores.
         remarks: what was left out, and why, a line each.
+        plan: places of a bolted structure, or None.
     """
 
     title: str
@@ -93,6 +95,7 @@ class Examined:
     scores: tuple[StretchScore, ...] = ()
     unit: str = ""
     remarks: tuple[str, ...] = ()
+    plan: StructurePlan | None = None
 
 
 def examine(
@@ -236,10 +239,11 @@ def _examine_hits(
             "--curves, --effects and --with do not apply to bolted bodies; leave them "
             "out"
         )
+    nominal = wanted.model or nominal_beside(paths[0])
     found, remarks = examine_structure(
-        paths[0], wanted.model, without=wanted.without, progress=progress
+        paths[0], nominal, without=wanted.without, progress=progress
     )
-    return Examined(paths[0].stem, found, remarks=remarks)
+    return Examined(paths[0].stem, found, remarks=remarks, plan=read_plan(nominal))
 
 
 def _examine_record(

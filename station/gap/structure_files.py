@@ -17,7 +17,7 @@ BESIDE = "sheet.json"
 
 def examine_structure(
     path: Path,
-    nominal: Path | None,
+    nominal: Path,
     *,
     without: frozenset[str],
     progress: Callable[[str], None],
@@ -26,8 +26,7 @@ def examine_structure(
 
     Args:
         path: file of schema ``campaign/1``.
-        nominal: nominal parameters (JSON); None for ``NAME.sheet.json`` or
-            ``sheet.json`` beside the campaign ``NAME.h5``.
+        nominal: nominal parameters (JSON).
         without: names of effects to leave out of the catalogue.
         progress: receives one line for each step.
 
@@ -35,11 +34,10 @@ def examine_structure(
         Verdict and evidence, and what a reader should know of the hits.
 
     Raises:
-        UsageError: there is no file of nominal parameters, or `without` holds a name
-            that no entry has.
+        UsageError: `without` holds a name that no entry has.
         BadData: a file cannot be used as it is.
     """
-    campaign = read_hit_campaign(path, *read_nominal(nominal or _beside(path)))
+    campaign = read_hit_campaign(path, *read_nominal(nominal))
     done = diagnose_structure(campaign, without=without, progress=progress)
     remarks = [
         f"hits landed {done.landing_mm:.2g} mm (rms) beside their points, tilted by "
@@ -49,8 +47,17 @@ def examine_structure(
     return done.found, tuple(remarks)
 
 
-def _beside(path: Path) -> Path:
-    """Return the nominal parameters that stand beside a campaign."""
+def nominal_beside(path: Path) -> Path:
+    """Return the nominal parameters that stand beside a campaign.
+
+    They are ``NAME.sheet.json`` or ``sheet.json`` beside the campaign ``NAME.h5``.
+
+    Args:
+        path: of the campaign.
+
+    Raises:
+        UsageError: there is no such file.
+    """
     places = (path.with_suffix(f".{BESIDE}"), path.with_name(BESIDE))
     for place in places:
         if place.is_file():

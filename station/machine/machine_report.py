@@ -18,11 +18,13 @@ from jointbench.analysis.structures.machine.reduce_machine import ReducedMachine
 from jointbench.station.machine.machine_shapes import shape_plots
 from jointbench.station.machine.machine_text import (
     TextTable,
+    bound_sentences,
+    chatter_sentences,
     cost_table,
     glued_table,
+    mode_sentences,
     mode_table,
     motion_table,
-    sentences,
     shape_table,
     tool_table,
 )
@@ -64,7 +66,7 @@ def write_machine_report(
             "modes",
             "Modes",
             (
-                *(Text(one) for one in sentences(result)),
+                *(Text(one) for one in mode_sentences(result)),
                 _table(mode_table(result)),
                 _table(shape_table(result)),
                 _table(glued_table(result)),
@@ -74,10 +76,18 @@ def write_machine_report(
         Section(
             "tool",
             "Receptance at the tool",
-            (_table(tool_table(result)), *_receptances(result)),
+            (
+                _table(tool_table(result)),
+                *(Text(one) for one in bound_sentences(result)),
+                *_receptances(result),
+            ),
         ),
         Section("joints", "Cost of each joint", (_table(cost_table(result)),)),
-        Section("chatter", "Stability lobes", tuple(_lobes(result))),
+        Section(
+            "chatter",
+            "Stability lobes",
+            (*(Text(one) for one in chatter_sentences(result)), *_lobes(result)),
+        ),
         Section(
             "motion",
             "Motion under the loads",
@@ -103,6 +113,8 @@ def _table(given: TextTable) -> DataTable:
 
 def _tiles(result: MachineResult) -> tuple[Tile, ...]:
     soft, rigid = result.jointed, result.glued
+    weakest = soft.modes.energy.weakest(0)[0]
+    joints = {one.name for one in result.costs}
     softest = int(np.argmax(np.diag(soft.tool.static)))
     ratio = soft.tool.static[softest, softest] / rigid.tool.static[softest, softest]
     tiles = [
@@ -113,7 +125,7 @@ def _tiles(result: MachineResult) -> tuple[Tile, ...]:
         ),
         Tile(
             "weakest region, mode 1",
-            soft.modes.energy.weakest(0)[0],
+            ("joint " if weakest in joints else "") + weakest,
             f"glued {rigid.modes.energy.weakest(0)[0]}",
         ),
         Tile(

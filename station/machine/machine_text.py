@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The result of a machine as sentences and rows, for the terminal and the report."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,7 +49,7 @@ def mode_table(result: MachineResult) -> TextTable:
                 str(at + 1),
                 f"{frequency:.4g}{_interval(result.frequency_interval, at)}",
                 _damping_text(soft, at),
-                _weakest(soft, at),
+                _weakest(soft, at, {one.name for one in result.costs}),
                 *_partner(rigid, partner, float(mac)),
             )
         )
@@ -62,7 +62,7 @@ def mode_table(result: MachineResult) -> TextTable:
         "MAC",
         "weakest if glued",
     )
-    title = "Modes with joints, and the glued mode of the most similar shape"
+    title = "Modes with joints, and the glued mode of the most similar shape (* joint)"
     return TextTable(title, columns, tuple(rows), frozenset({2, 3, 6}))
 
 
@@ -112,17 +112,17 @@ def tool_table(result: MachineResult) -> TextTable:
     soft, rigid = result.jointed.tool, result.glued.tool
     rows = []
     for at, axis in enumerate(AXES):
-        static = f"{_NANO * soft.static[at, at]:.3g}"
+        static = _plain(_NANO * soft.static[at, at])
         if soft.static_interval is not None:
             low, high = _NANO * soft.static_interval[:, at]
-            static += f" ({low:.3g} to {high:.3g})"
+            static += f" ({_plain(low)} to {_plain(high)})"
         rows.append(
             (
                 axis,
-                f"{_NANO * rigid.static[at, at]:.3g}",
+                _plain(_NANO * rigid.static[at, at]),
                 static,
-                f"{_NANO * rigid.largest[at]:.3g} at {rigid.at[at]:.4g} Hz",
-                f"{_NANO * soft.largest[at]:.3g} at {soft.at[at]:.4g} Hz",
+                f"{_plain(_NANO * rigid.largest[at])} at {rigid.at[at]:.4g} Hz",
+                f"{_plain(_NANO * soft.largest[at])} at {soft.at[at]:.4g} Hz",
             )
         )
     columns = (
@@ -134,6 +134,12 @@ def tool_table(result: MachineResult) -> TextTable:
     )
     title = "Receptance at the tool [nm/N]"
     return TextTable(title, columns, tuple(rows))
+
+
+def _plain(value: float) -> str:
+    """Return three digits, without an exponent up to a million."""
+    text = f"{value:.3g}"
+    return f"{float(text):.0f}" if 1e3 <= abs(value) < 1e6 else text
 
 
 def cost_table(result: MachineResult) -> TextTable:
@@ -185,8 +191,23 @@ def motion_table(result: MachineResult) -> TextTable | None:
 
 
 def sentences(result: MachineResult) -> list[str]:
-    """Return what the tables do not show: overdamped modes, chatter, size."""
-    found = [_damping_sentence(result.jointed.modes)]
+    """Return what the tables do not show: overdamped modes, chatter, accuracy."""
+    found = [*mode_sentences(result), *chatter_sentences(result)]
+    return found + bound_sentences(result)
+
+
+def mode_sentences(result: MachineResult) -> list[str]:
+    """Return overdamped modes, the size of the model and the accuracy of its modes."""
+    size = (
+        f"{result.freedoms} degrees of freedom, reduced to {result.size[0]}; jointed "
+        f"frequencies are at most {100 * result.bound:.2g} % above those of the mesh"
+    )
+    return [_damping_sentence(result.jointed.modes), size, *_speed_sentence(result)]
+
+
+def chatter_sentences(result: MachineResult) -> list[str]:
+    """Return the widths of cut that are stable at every speed."""
+    found = []
     for word, one in (("glued", result.glued), ("jointed", result.jointed)):
         if one.chatter is None:
             continue
@@ -201,11 +222,7 @@ def sentences(result: MachineResult) -> list[str]:
             low, high = result.limit_interval
             text += f" (95 %: {_width(low)} to {_width(high)})"
         found.append(f"{text}; limited at {one.chatter.frequency:.4g} Hz")
-    found.append(
-        f"{result.freedoms} degrees of freedom, reduced to {result.size[0]}; jointed "
-        f"frequencies are at most {result.bound:.1e} (relative) above those of the mesh"
-    )
-    return found + _bound_sentence(result) + _speed_sentence(result)
+    return found
 
 
 def _speed_sentence(result: MachineResult) -> list[str]:
@@ -226,7 +243,7 @@ def _speed_sentence(result: MachineResult) -> list[str]:
     ]
 
 
-def _bound_sentence(result: MachineResult) -> list[str]:
+def bound_sentences(result: MachineResult) -> list[str]:
     """Return the bound of the error of the receptance at the tool."""
     bound = result.jointed.tool.bound
     if bound is None:
@@ -234,7 +251,8 @@ def _bound_sentence(result: MachineResult) -> list[str]:
     text = "The jointed receptance at the tool is within "
     if np.isfinite(bound.largest):
         return [
-            f"{text}{bound.largest:.1e} of that of the mesh, away from antiresonances"
+            f"{text}{100 * bound.largest:.2g} % of that of the mesh, away from "
+            "antiresonances"
         ]
     return [
         "The error of the receptance at the tool has no bound at "
@@ -277,9 +295,10 @@ def _interval(interval: FloatArray | None, at: int) -> str:
     return f" ({interval[0, at]:.4g} to {interval[1, at]:.4g})"
 
 
-def _weakest(modes: VariantModes, at: int) -> str:
+def _weakest(modes: VariantModes, at: int, joints: Collection[str] = ()) -> str:
+    """Return the region with most of the energy, joints marked, and its share."""
     name, share = modes.energy.weakest(at)
-    return f"{name} {100 * share:.0f} %"
+    return f"{name}{'*' if name in joints else ''} {100 * share:.0f} %"
 
 
 def _three(values: Sequence[float] | FloatArray, form: str) -> str:

@@ -31,6 +31,7 @@ from jointbench.analysis.contact.uncertainty import (
 )
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.surface.structure_function import StructureFunction, combine
+from jointbench.signal.surface.surface_treatment import outside_filters
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.pipeline.contact_request import ContactRequest
 from jointbench.station.pipeline.roughness_words import contact_surface_json
@@ -124,7 +125,9 @@ def surface_of(
         chains = [analyse_surface(s) for _, s in faces]
         said = [one for chain in chains for one in chain_cautions(chain)]
         try:
-            whole = equivalent_surface([chain.structure for chain in chains])
+            whole = equivalent_surface(
+                [outside_filters(c.structure, c.surface) for c in chains]
+            )
         except BadData as error:  # what is odd about the heights may be the cause
             raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
         return replace(whole, cautions=tuple(dict.fromkeys(said)))

@@ -37,6 +37,7 @@ from jointbench.signal.surface.structure_function import StructureFunction
 from jointbench.signal.surface.surface_treatment import (
     UNTREATED,
     SurfaceTreatment,
+    outside_filters,
     treated,
     treated_structure,
 )
@@ -109,7 +110,8 @@ def _surface(
     )
     name = f"surface {surface.name}"
     key = stages.key("surface", gamma, first)
-    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(structure, gamma=gamma))
+    shown = outside_filters(structure, surface)
+    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(shown, gamma=gamma))
     return SurfaceChain(surface, structure, fit)
 
 
@@ -148,6 +150,7 @@ def gap_stage(
     bench: BenchModel,
     without: Sequence[str],
     run: StageRun,
+    curves: MeasuredCurves | None = None,
 ) -> Page:
     """Ask what a model lacks, as `jointbench gap` does; verdict and evidence as JSON.
 
@@ -156,6 +159,8 @@ def gap_stage(
         bench: the model.
         without: names of effects to leave out of the catalogue.
         run: store and source.
+        curves: modes over amplitude at the model's preload, compared with what the
+            explanations predict; None for no comparison.
     """
     left, entries = frozenset(without), installed_catalogue()
 
@@ -166,6 +171,7 @@ def gap_stage(
             nominal_parameters(bench),
             without=left,
             entries=entries,
+            curves=curves,
         )
         packages = effect_packages(entries)
         page = diagnosis_json(found) | {"left_out": list(left_out)}
@@ -176,7 +182,9 @@ def gap_stage(
     facts = run.stages.digest(
         tuple((r.name, r.hits, r.preload, r.provenance) for r in judged)
     )
-    return run.stages.run("gap", run.stages.key("gap", given, known, facts), Page, make)
+    compared = run.stages.digest(curves)
+    key = run.stages.key("gap", given, known, facts, compared)
+    return run.stages.run("gap", key, Page, make)
 
 
 def gap_of(

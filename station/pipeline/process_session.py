@@ -14,7 +14,9 @@ from typing import Any
 from jointbench.acquisition.basics.errors import BadData, JointbenchError, UsageError
 from jointbench.acquisition.records.recordings import Recording, Verdict
 from jointbench.acquisition.records.session import Session
+from jointbench.analysis.gap.diagnosis.amplitude_evidence import MeasuredCurves
 from jointbench.analysis.lumped.identified import identification_json
+from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
 from jointbench.station.pipeline.chain import ModalChain, hits_stage, modal_chain
 from jointbench.station.pipeline.contact_prediction import contact_json
@@ -37,6 +39,7 @@ from jointbench.station.pipeline.recordings_by_preload import at_words, by_prelo
 from jointbench.station.pipeline.stage_store import StageRun, StageStore
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
 from jointbench.station.schemas.bench_model import ContactTable
+from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.schemas.recipe import Recipe
 
 Page = dict[str, Any]
@@ -125,7 +128,7 @@ def process_session(
             for modes in modal
             if (page := _joint(modes, recipe, run, remarks)) is not None
         ),
-        gap=_gap(session, judged, recipe, run, remarks),
+        gap=_gap(session, judged, modal, recipe, run, remarks),
         remarks=tuple(remarks.lines),
         stages=stages,
     )
@@ -241,6 +244,7 @@ def _joint(
 def _gap(
     session: Session,
     judged: Sequence[Recording],
+    modal: Sequence[PreloadModes],
     recipe: Recipe,
     run: StageRun,
     remarks: Remarks,
@@ -253,4 +257,25 @@ def _gap(
     recordings = [
         r if r.preload is not None else replace(r, preload=of_session) for r in judged
     ]
-    return remarks.attempt("gap", lambda: gap_stage(recordings, bench, without, run))
+
+    def make() -> Page:
+        reference = nominal_parameters(bench).preload_reference
+        curves = curves_at(modal, reference)
+        return gap_stage(recordings, bench, without, run, curves)
+
+    return remarks.attempt("gap", make)
+
+
+def curves_at(modal: Sequence[PreloadModes], reference: float | None) -> MeasuredCurves:
+    """Return the modes over amplitude at the preload that a model belongs to.
+
+    Args:
+        modal: modes at each preload.
+        reference: preload of the model [N]; None takes the first.
+    """
+    for modes in modal:
+        if reference is None or modes.preload is None or modes.preload == reference:
+            hits = sum(len(accepted_hits(r)) for r in modes.chain.recordings)
+            return MeasuredCurves(modes.chain.amplitude, hits=hits)
+    at = at_words(reference)
+    return MeasuredCurves(reason=f"no modes{at}, the preload of the model")

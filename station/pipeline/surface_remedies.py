@@ -10,6 +10,7 @@ from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.signal.surface.form_removal import OUTLIER_LIMIT
 from jointbench.signal.surface.surface_treatment import (
     SurfaceTreatment,
+    outside_filters,
     treated_structure,
 )
 from jointbench.station.screen.value_text import engineering
@@ -66,7 +67,8 @@ def _tries(treatment: SurfaceTreatment) -> list[tuple[str, SurfaceTreatment]]:
 
 def _fitted(surface: Surface, treatment: SurfaceTreatment) -> FractalFit | None:
     try:
-        return fit_fractal(treated_structure(surface, treatment)[1])
+        flat, structure = treated_structure(surface, treatment)
+        return fit_fractal(outside_filters(structure, flat))
     except (BadData, UsageError):
         return None
 

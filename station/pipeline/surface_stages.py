@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: MIT
 """``jointbench surface``: structure function and fractal parameters of surfaces."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
+from jointbench.signal.band_limited.band_records import BandLimitedFit
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.verdict_records import FractalFit
-from jointbench.signal.surface.levelling import level
-from jointbench.signal.surface.line_spectrum import line_spectrum
+from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.signal.surface.structure_function import StructureFunction
-from jointbench.signal.surface.surface_treatment import treated_structure
+from jointbench.signal.surface.surface_treatment import (
+    outside_filters,
+    treated_structure,
+)
 from jointbench.station.pipeline.roughness_words import (
     caution_lines,
-    roughness_json,
 )
 from jointbench.station.pipeline.surface_options import (
     NOTHING_BESIDE,
@@ -24,6 +26,7 @@ from jointbench.station.pipeline.surface_options import (
     beside_the_fit,
 )
 from jointbench.station.pipeline.surface_remedies import remedy
+from jointbench.station.screen.band_limited_words import qualified
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,6 +40,8 @@ class SurfaceChain:
         beside: what options ask in addition.
         remedy: what would give the surface a scaling range; None where it has one, or
             where none was looked for.
+        band: the band-limited surface; None where none was fitted.
+        no_band: why none was fitted.
     """
 
     surface: Surface
@@ -44,6 +49,8 @@ class SurfaceChain:
     fit: FractalFit
     beside: Beside = NOTHING_BESIDE
     remedy: str | None = None
+    band: BandLimitedFit | None = None
+    no_band: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,6 +60,7 @@ class Pooled:
     structure: StructureFunction
     fit: FractalFit
     beside: Beside
+    band: BandLimitedFit
 
 
 def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> SurfaceChain:
@@ -64,7 +72,7 @@ def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> Surfac
     """
     flat, structure = treated_structure(surface, options.treatment)
     beside = beside_the_fit(flat, structure, options)
-    fit = fit_fractal(structure)
+    fit = fit_fractal(outside_filters(structure, flat))
     return SurfaceChain(flat, structure, fit, beside)
 
 
@@ -75,57 +83,20 @@ def with_remedy(
     return replace(chain, remedy=remedy(given, chain.fit, asked.treatment))
 
 
+def with_band(chain: SurfaceChain, asked: SurfaceOptions) -> SurfaceChain:
+    """Return a chain with its band-limited surface, and a verdict that heeds it."""
+    if asked.treatment.direction is not None:
+        said = "it runs along the rows of a map; leave out --direction"
+        return replace(chain, no_band=said)
+    try:
+        band = fit_band_limited([chain.surface], degree=asked.treatment.form or 1)
+    except (BadData, UsageError) as error:
+        return replace(chain, no_band=str(error))
+    verdict, reason = qualified(chain.fit, band)
+    fit = replace(chain.fit, verdict=SurfaceVerdict(verdict), reason=reason)
+    return replace(chain, band=band, fit=fit)
+
+
 def chain_cautions(chain: SurfaceChain) -> tuple[str, ...]:
     """Return what to keep in mind about the heights, one line each."""
     return caution_lines(chain.surface.name, cautions(chain.surface.provenance))
-
-
-def surface_json(chain: SurfaceChain) -> dict[str, object]:
-    """Return what the contract promises of ``surface``, and more."""
-    said = cautions(chain.surface.provenance)
-    return {
-        **fit_json(chain.surface.name, chain.fit, said),
-        "remedy": chain.remedy,
-        "spectrum": spectrum_json(chain.surface),
-        **dict(chain.beside.keys),
-    }
-
-
-def fit_json(name: str, fit: FractalFit, said: Sequence[str]) -> dict[str, object]:
-    """Return a fit and its cautions as plain data."""
-    return {
-        "surface": name,
-        "verdict": fit.verdict.value,
-        "reason": fit.reason,
-        "cautions": list(said),
-        "dimension": fit.dimension,
-        "dimension_sd": fit.dimension_sd,
-        **roughness_json(fit.scaling),
-        "fit_band_m": fit.fit_band,
-        "instrument": fit.instrument,
-        "instrument_parameters": [
-            {"name": p.name, "value_m": p.value, "sd_m": p.sd}
-            for p in fit.instrument_parameters
-        ],
-        "chi2_per_dof": fit.chi2_per_dof,
-        "pivot_m": fit.pivot,
-        "pivot_value_m2": fit.pivot_value,
-        "local_slope": {
-            "lag_m": fit.local_slope.lag.tolist(),
-            "slope": fit.local_slope.slope.tolist(),
-            "sd": fit.local_slope.sd.tolist(),
-        },
-        "provenance": [{"step": s.name, **dict(s.detail)} for s in fit.provenance],
-    }
-
-
-def spectrum_json(surface: Surface) -> dict[str, object] | None:
-    """Return the power spectral density along the lines of a surface as plain data."""
-    found = line_spectrum(level(surface))
-    if found is None:
-        return None
-    return {
-        "wavelength_m": (1 / found.frequency).tolist(),
-        "density_m3": found.density.tolist(),
-        "ordinates": found.count.tolist(),
-    }

@@ -58,11 +58,19 @@ class _Feet(_NominalPart):
     rel_sigma: _Sigmas
 
 
+class _ModalTable(_NominalPart):
+    frequency_rel_sigma: Annotated[float, Field(ge=0, le=0.1)] = 0.0
+    shape_rel_sigma: Annotated[float, Field(ge=0, le=0.3)] = 0.0
+
+
 class NominalFile(_NominalPart):
     """the nominal parameters as written."""
 
     schema_: Literal["bench-sheet/1"] = Field(alias="schema")
     plates: _Plates
+    bolts_mm: Annotated[
+        tuple[tuple[Finite, Finite, Finite], ...], Field(max_length=1000)
+    ] = ()
     torques: Annotated[
         tuple[Positive, ...], Field(alias="torques_Nm", min_length=1, max_length=100)
     ]
@@ -75,6 +83,7 @@ class NominalFile(_NominalPart):
     plate_damping_ratio: Positive
     plate_damping_rel_sigma: Sigma
     feet: _Feet
+    modal_table: _ModalTable = _ModalTable()
 
 
 def read_nominal(path: Path) -> tuple[NominalBench, dict[str, PlannedPoint]]:
@@ -122,4 +131,9 @@ def _nominal(found: NominalFile) -> NominalBench:
         aim_sd=1e-3 * found.aim_sigma_mm,
         tilt_sd=math.radians(found.tilt_sigma_deg),
         torque_reference=float(np.median(found.torques)),
+        bolt_places=1e-3 * np.array(found.bolts_mm).reshape(-1, 3)[:, :2],
+        table_sd=(
+            found.modal_table.frequency_rel_sigma,
+            found.modal_table.shape_rel_sigma,
+        ),
     )

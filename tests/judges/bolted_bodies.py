@@ -21,11 +21,12 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     JointedBodies,
     MassPlace,
 )
+from jointbench.analysis.gap.structure_bench.port_laws import LawForm, PortLaws
 
 RATE = 32_768.0
 """Of the raw force [Hz]."""
 FILTER = CommonFilter(scipy.signal.firwin(41, 4500.0, fs=RATE), 2)
-PARTS = 2
+PARTS = 4
 """Intervals per sample, after each of which the sliders remember where they stuck."""
 BOLTS, FEET, CHANNELS, ELASTIC = 4, 4, 3, 4
 
@@ -41,7 +42,7 @@ def random_bodies(
     on = [np.where(body == k, 1.0, 0.0) for k in (0, 1)]
     shapes = 0.3 * rng.standard_normal((BOLTS, 3, n))
     hit = 0.3 * rng.standard_normal((3, n)) * on[1]
-    place = MassPlace("P1", hit)
+    place = MassPlace("P1", hit, hit[2:])
     point = HitPoint(
         "P1",
         np.array([0.0, 0.0, -1.0]),
@@ -60,6 +61,7 @@ def random_bodies(
         points=(point,),
         places=(place,),
         rigid=rigid,
+        across=np.zeros((0, 2, n)),
     )
 
 
@@ -97,11 +99,12 @@ def integrated(
         column: of the force in modes, shape (n_modes,).
     """
     n = bodies.omega.size
-    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
-    mass = np.diag(state.mass[bodies.body])
+    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body] * state.tuning
+    mass, ground = np.diag(state.mass[bodies.body]), np.zeros((n, n))
     for one in state.attached:
-        place = bodies.places[one.place].rows
+        place = one.rows(bodies)
         mass += one.mass * place.T @ place
+        ground += one.stiffness * place.T @ place
     inverse = np.linalg.inv(mass)
     stiff = state.mass[bodies.body] * omega**2
     lossy = state.mass[bodies.body] * 2 * state.loss[bodies.body] * omega
@@ -109,11 +112,15 @@ def integrated(
     k = np.repeat(state.bolt, 3) / np.tile(state.compliance, len(state.bolt))
     c = np.repeat(state.bolt, 3) * np.tile(state.damping, len(state.bolt))
     feet = bodies.feet.reshape(-1, n)
-    laws = state.laws
-    ports = np.array(() if laws is None else laws.ports, dtype=int)
-    slips = np.zeros(0) if laws is None else laws.slips
-    weights = np.zeros(0) if laws is None else laws.weights
-    held = np.zeros(ports.size) if laws is None else laws.share * k[ports]
+    foot = state.foot[0] * np.repeat(state.foot_factor, 3)
+    sensors = bodies.sensors if state.sensors is None else state.sensors
+    sliding = [law for law in state.laws if law.kind == LawForm.FRICTION]
+    others = [law for law in state.laws if law.kind != LawForm.FRICTION]
+    ports = np.array([p for law in sliding for p in law.ports], dtype=int)
+    slips = np.array([law.slips for law in sliding for _ in law.ports])
+    weights = np.array([law.weights for law in sliding for _ in law.ports])
+    sizes = np.array([law.size for law in sliding for _ in law.ports])
+    held = sizes * k[ports]
     elastic = k.copy()
     elastic[ports] -= held
     times = np.arange(force.size) / RATE
@@ -121,26 +128,47 @@ def integrated(
 
     def held_force(motion: FloatArray, memory: FloatArray) -> FloatArray:
         stretch = np.clip(memory + motion[:, None], -slips, slips)
-        return held * (stretch @ weights)
+        return np.asarray(held * np.sum(stretch * weights, axis=1))
 
     def rates(t: float, y: FloatArray, memory: FloatArray) -> FloatArray:
         q, v = y[:n], y[n:]
         joint = elastic * (rows @ q) + c * (rows @ v)
-        joint[ports] += held_force(rows[ports] @ q, memory)
+        if sliding:
+            joint[ports] += held_force(rows[ports] @ q, memory)
+        for law in others:
+            own = rows[list(law.ports)]
+            joint[list(law.ports)] += _force(law, own @ q, own @ v)
         push = column * float(spline(t)) - joint @ rows
-        push -= (state.foot[0] * (feet @ q) + state.foot[1] * (feet @ v)) @ feet
+        push -= (foot * (feet @ q) + state.foot[1] * (feet @ v)) @ feet + ground @ q
         return np.concatenate([v, inverse @ (push - stiff * q - lossy * v)])
 
     # Sliders remember where they stuck: between two samples the motion hardly turns.
-    y, memory = np.zeros(2 * n), np.zeros((ports.size, slips.size))
+    y, memory = np.zeros(2 * n), np.zeros_like(slips)
     moved = [rates(0.0, y, memory)[n:]]
     fine = np.linspace(0.0, times[-1], PARTS * (times.size - 1) + 1)
-    for count, (start, end) in enumerate(itertools.pairwise(fine), start=1):
+    for start, end in itertools.pairwise(fine):
         y = scipy.integrate.solve_ivp(
             rates, (start, end), y, args=(memory,), rtol=1e-7, atol=1e-13
         ).y[:, -1]
-        motion = (rows[ports] @ y[:n])[:, None]
-        memory = np.clip(memory + motion, -slips, slips) - motion
-        if count % PARTS == 0:
-            moved.append(rates(end, y, memory)[n:])
-    return FILTER(bodies.sensors @ np.array(moved).T)
+        if sliding:
+            motion = (rows[ports] @ y[:n])[:, None]
+            memory = np.clip(memory + motion, -slips, slips) - motion
+        moved.append(rates(end, y, memory)[n:])
+    # A stop has a kink, whose spectrum would fold back without a filter.
+    fine_motion = sensors @ np.array(moved).T
+    return FILTER(
+        scipy.signal.resample_poly(
+            fine_motion, 1, PARTS, axis=1, window=("kaiser", 10.0)
+        )
+    )
+
+
+def _force(law: PortLaws, motion: FloatArray, speed: FloatArray) -> FloatArray:
+    """Return the force of a law without memory, shape (n_ports,)."""
+    forces = {
+        LawForm.STOP: np.maximum(motion - law.gap, 0.0),
+        LawForm.CUBIC: motion**3,
+        LawForm.QUADRATIC: motion**2,
+        LawForm.SQUARE_DAMPING: speed * np.abs(speed),
+    }
+    return np.asarray(law.size * forces[law.kind])

@@ -8,6 +8,7 @@ import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
+from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
 from jointbench.analysis.gap.judgement.naming import Acceptance, accept
 from jointbench.analysis.gap.judgement.rivals import rivals, without_duplicates
 from jointbench.analysis.gap.judgement.winner_judging import (
@@ -162,11 +163,14 @@ def judged(
     """Judge, and remove effects that have become unnecessary.
 
     A delay may move the base to where a relaxation becomes visible, and then end at
-    amplitude zero.
+    amplitude zero. It may also describe a hit that the noise estimate at the pair
+    takes out: then it is not distinct from zero.
     """
     found = _Round(*judge(bench, fits, base, progress, predicted_gains))
     best = found.fits[0]
-    if len(best.candidates) == 1 or fits[0].cost - best.cost < DIAGNOSIS.needless_gain:
+    gained = fits[0].cost - best.cost >= DIAGNOSIS.needless_gain
+    weak = weakest_amplitude(best) < bench.policy.amplitude_limit
+    if len(best.candidates) == 1 or not (gained or weak):
         return found
     merged = _take_back(found.bench, found.fits, progress)
     if merged[0] is best:

@@ -36,10 +36,10 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_bench.structure_effects import (
+from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
-    StructureEffect,
 )
+from jointbench.analysis.gap.structure_bench.structure_effects import StructureEffect
 
 OTHER_POINTS = (
     "hit a further point off the lines of symmetry, in the tangential direction as "

@@ -60,7 +60,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
     start = _base_in_windows(few)
-    few = few.at(start, (), few.landing, STRUCTURE.table_floor)
+    few = few.at(start, (), few.landing, few.table_floor)
     progress("base in whole records")
     whole, base = _base_in_whole_records(bench, few, start)
     first = accept_structure(whole, base, base)
@@ -71,7 +71,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     if first.passed:
         return StructureOutcome(none, whole, whole)
     carried = _carried(few, near, screening, progress)
-    done = _in_whole_records(bench, base, carried, progress)
+    done = _in_whole_records(bench, few, base, carried, progress)
     if not done:
         return StructureOutcome(none, whole, whole)
     best = done[0]
@@ -91,7 +91,8 @@ def _base_in_windows(few: StructureBench) -> FloatArray:
     """Fit the base from its nominal values, coarse to fine."""
     x = np.zeros(few.base_sd.size)
     for window in STRUCTURE.base_windows:
-        few = few.at(x, (), few.landing, STRUCTURE.coarse_floor)
+        floor = max(STRUCTURE.coarse_floor, few.table_floor)
+        few = few.at(x, (), few.landing, floor)
         problem = make_problem(few, ())
         x = minimise(problem, x, Resolution(window), iterations=8, exact_slopes=False).x
     return x
@@ -107,10 +108,10 @@ def _base_in_whole_records(
     """
     reach = STRUCTURE.final_reach
     r = make_problem(few, ()).residual(start, LONGER)
-    if float(r @ r) < STRUCTURE.near_chi2 * r.size:
-        return settled(replace(bench, reach=reach), start, (), STRUCTURE.table_floor)
+    if float(r @ r) * few.coherence < STRUCTURE.near_chi2 * r.size:
+        return settled(replace(bench, reach=reach), start, (), bench.table_floor)
     x = _whole(replace(few, reach=reach), start, ()).x
-    whole = replace(bench, reach=reach).at(x, (), bench.landing, STRUCTURE.table_floor)
+    whole = replace(bench, reach=reach).at(x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
 
 
@@ -197,11 +198,18 @@ def _carried(
 
 
 def _chosen(few: StructureBench, screening: Screening) -> list[Candidate]:
-    """Return the leaders of the directed tests, and those that are always tried."""
+    """Return the leaders of the directed tests, and those that are always tried.
+
+    An effect leads at a few sites at most, else one that follows any residual would
+    fill all places.
+    """
     always = {e.effect.name for e in few.entries if e.always}
-    leaders = screening.leaders(len(few.candidates))
     chosen = [c for c in few.candidates if c.effect.name in always]
-    others = [c for c in leaders if c not in chosen]
+    others: list[Candidate] = []
+    for c in screening.leaders(len(few.candidates)):
+        same = sum(c.effect.name == one.effect.name for one in others)
+        if c not in chosen and same < STRUCTURE.leading_sites:
+            others.append(c)
     return others[: STRUCTURE.leaders] + chosen
 
 
@@ -232,16 +240,54 @@ class _WholeFit:
 
 
 def _in_whole_records(
-    bench: StructureBench, base: Fit, carried: Sequence[Fit], progress: Progress
+    bench: StructureBench,
+    few: StructureBench,
+    base: Fit,
+    carried: Sequence[Fit],
+    progress: Progress,
 ) -> list[_WholeFit]:
     """Fit the best candidates to whole records, accepted ones first."""
     done: list[_WholeFit] = []
     bench = replace(bench, reach=STRUCTURE.final_reach)
     for fit in _worth_it(carried):
         progress(f"{fit.candidates[0].label} in whole records")
-        own, found = settled(bench, fit.x, fit.candidates, STRUCTURE.table_floor)
+        start = _approached(few, fit)
+        own, found = settled(bench, start, fit.candidates, bench.table_floor)
         done.append(_WholeFit(own, found, accept_structure(own, found, base)))
     return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
+
+
+def _approached(few: StructureBench, fit: Fit) -> FloatArray:
+    """Return a start in whole records: with nonlinear laws, window by window."""
+    if not few.nonlinear(fit.candidates):
+        return fit.x
+    for window in STRUCTURE.law_windows:
+        few, fit = _settled_in(few, fit, Resolution(window))
+    return fit.x
+
+
+def _settled_in(
+    few: StructureBench, fit: Fit, window: Resolution
+) -> tuple[StructureBench, Fit]:
+    """Fit a window, in turn with where each hit landed."""
+    landing = few.landing
+    for _ in range(STRUCTURE.law_rounds):
+        few = few.at(fit.base, fit.terms, landing, few.floor)
+        problem = make_problem(few, fit.candidates)
+        before = cost_at(problem, fit.x, window)
+        fit = minimise(
+            problem,
+            fit.x,
+            window,
+            iterations=STRUCTURE.law_iterations,
+            exact_slopes=False,
+        )
+        if before - fit.cost < STRUCTURE.settled_share * fit.cost and landing.any():
+            break
+        if fit.chi2 > STRUCTURE.near_chi2 * fit.residual.size:
+            break
+        landing, _ = few.landed(fit.base, fit.terms, window.window)
+    return few, fit
 
 
 def _judged(none: SearchOutcome, done: Sequence[_WholeFit]) -> SearchOutcome:
@@ -289,7 +335,7 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         fit: to be judged.
         base: fit without effects.
     """
-    dof = bench.blocks.dof
+    dof = bench.blocks.dof / bench.coherence
     chi2 = fit.chi2 / dof
     policy = bench.policy
     allowed = policy.floor_chi2

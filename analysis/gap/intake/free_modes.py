@@ -19,8 +19,9 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
 )
 
 BODIES = ("bottom", "top")
-_Sensor = tuple[str, int, tuple[float, ...] | None]
-"""Channel, index of its body, position [m]."""
+_Vector = tuple[float, ...] | None
+_Sensor = tuple[str, int, _Vector, _Vector]
+"""Channel, index of its body, position [m], direction."""
 _Points = Mapping[str, tuple[tuple[float, float, float], str]]
 """Direction of a hit, and the body that is hit, by point."""
 
@@ -97,8 +98,9 @@ def read_bodies(
             name,
             (),
         )
-        for name, body, _ in sensors
+        for name, body, *_ in sensors
     ]
+    sites = _sites(tables, sensors)
     hit_points = tuple(_hit_point(tables, name, *p) for name, p in points.items())
     return JointedBodies(
         bodies=BODIES,
@@ -106,18 +108,49 @@ def read_bodies(
         omega=2 * np.pi * np.concatenate([t.frequency for t in tables]),
         bolts=bolts[1] - bolts[0],
         feet=feet,
-        channels=tuple(name for name, _, _ in sensors),
+        channels=tuple(name for name, *_ in sensors),
         sensors=np.array(rows),
         points=hit_points,
         places=(
             *_places("bottom bolt", bolts[0]),
             *_places("top bolt", bolts[1]),
             *_places("foot", feet),
-            *(MassPlace(point.name, point.rows) for point in hit_points),
-            *_sensor_places(sensors, rows),
+            *(
+                MassPlace(p.name, p.rows, np.abs(p.direction)[None] @ p.rows)
+                for p in hit_points
+            ),
+            *_sensor_places(sensors, rows, sites),
         ),
         rigid=(bool(rigid[0]), bool(rigid[1]), bool(rigid[2])),
+        across=_across(sensors, sites, total=rows[0].size),
     )
+
+
+def _sites(
+    tables: Sequence[_Table], sensors: Sequence[_Sensor]
+) -> list[FloatArray] | None:
+    """Return the motion at each sensor in three directions; None if not listed."""
+    groups = [table.group.get("phi_site") for table in tables]
+    found = []
+    for name, body, *_ in sensors:
+        group = groups[body]
+        if not isinstance(group, h5py.Group) or name not in group:
+            return None
+        found.append(tables[body].rows(group, name, (3,)))
+    return found
+
+
+def _across(
+    sensors: Sequence[_Sensor], sites: Sequence[FloatArray] | None, *, total: int
+) -> FloatArray:
+    """Return the motion along the two axes most at right angles to each sensor."""
+    if sites is None or any(direction is None for *_, direction in sensors):
+        return np.zeros((0, 2, total))
+    found = []
+    for (*_, direction), site in zip(sensors, sites, strict=True):
+        along = np.abs(np.asarray(direction, dtype=float))
+        found.append(site[np.sort(np.argsort(along)[:2])])
+    return np.array(found)
 
 
 def _tables(where: str, file: h5py.File) -> tuple[_Table, ...]:
@@ -169,17 +202,26 @@ def _hit_point(
 
 
 def _places(name: str, rows: FloatArray) -> list[MassPlace]:
-    return [MassPlace(f"{name} {k}", one) for k, one in enumerate(rows)]
+    none = np.zeros((0, rows.shape[2]))
+    return [MassPlace(f"{name} {k}", one, none) for k, one in enumerate(rows)]
 
 
 def _sensor_places(
-    sensors: Sequence[_Sensor], rows: Sequence[FloatArray]
+    sensors: Sequence[_Sensor],
+    rows: Sequence[FloatArray],
+    sites: Sequence[FloatArray] | None,
 ) -> list[MassPlace]:
-    """Return a place for each sensor position, with all directions measured there."""
+    """Return a place for each sensor position, with all directions known there."""
     groups: dict[tuple[object, ...], list[int]] = {}
-    for k, (name, body, position) in enumerate(sensors):
+    for k, (name, body, position, _) in enumerate(sensors):
         groups.setdefault((body, position or name), []).append(k)
-    return [
-        MassPlace(sensors[own[0]][0], np.array([rows[k] for k in own]))
-        for own in groups.values()
-    ]
+    found = []
+    for own in groups.values():
+        measured = np.array([rows[k] for k in own])
+        whole = measured if sites is None else sites[own[0]]
+        found.append(MassPlace(sensors[own[0]][0], whole, measured[:1]))
+        found += [
+            MassPlace(sensors[k][0], np.zeros_like(whole[:0]), rows[k][None])
+            for k in own[1:]
+        ]
+    return found

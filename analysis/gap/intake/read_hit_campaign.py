@@ -107,7 +107,7 @@ def _campaign(
     channels = _channels(where, file)
     raw = _raw_hits(where, file, channels, tuple(points))
     directions = {name: (p.direction, p.body) for name, p in points.items()}
-    sensors = [(c.name, c.body, c.position) for c in channels[1:]]
+    sensors = [(c.name, c.body, c.position, c.direction) for c in channels[1:]]
     rigid = np.isinf(nominal.stiffness)
     bodies = read_bodies(where, file, sensors, directions, rigid)
     hits = filter_hits(raw, bodies)

@@ -30,6 +30,7 @@ from jointbench.analysis.gap.response.law_forces import (
     SPEED,
     SPREAD,
     rub,
+    sign_of,
 )
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 
@@ -81,7 +82,7 @@ def follow_switch(
         method exprb32 for a piece.
     """
     v, t, moment, second = start, 0.0, 0.0, 0.0
-    bend = math.tanh(v / width)
+    bend = sign_of(v / width)
     for piece in range(_PIECES):
         rate = drift + growth * (t - 0.5) - hold * limit * bend
         steep, reach = 0.0, abs(v) - _FAR * width
@@ -95,12 +96,12 @@ def follow_switch(
             h = min(h, reach / (abs(rate) + 1e-300))
         one, two, three = _exponential_weights(steep * h)
         grown = (one * rate + two * growth * h) * h
-        changed = -hold * limit * (math.tanh((v + grown) / width) - bend)
+        changed = -hold * limit * (sign_of((v + grown) / width) - bend)
         grown += 2.0 * three * h * (changed - steep * grown)
         middle = t + 0.5 * h - 0.5
         force = (drift + growth * middle - grown / h) / hold
         v, t, before = v + grown, t + h, bend
-        bend = math.tanh(v / width)
+        bend = sign_of(v / width)
         lean = limit * (bend - before) * h * h / 12.0
         moment += force * h * middle + lean
         second += force * h * (middle * middle + h * h / 12.0) + 2.0 * middle * lean

@@ -57,12 +57,11 @@ def link_modes(
     Returns:
         Poles, one of each conjugate pair, and rows of the ports.
     """
-    linear = tuple(a for a in actions if a.entry.stiffness is not None)
-    return _modes(_Query(model, theta, conditions, tuple(links), linear))
+    return _modes(LinearQuery(model, theta, conditions, tuple(links), actions))
 
 
-class _Query:
-    """Inputs of `link_modes`, equal if all of them are the same to the last bit."""
+class LinearQuery:
+    """A linear model with its ports, equal to another one if so to the last bit."""
 
     __slots__ = ("_key", "actions", "conditions", "links", "model", "theta")
 
@@ -72,16 +71,17 @@ class _Query:
         theta: FloatArray,
         conditions: HitConditions,
         links: tuple[int, ...],
-        actions: tuple[Action, ...],
+        actions: Sequence[Action],
     ) -> None:
+        linear = tuple(a for a in actions if a.entry.stiffness is not None)
         self.model, self.theta, self.conditions = model, theta, conditions
-        self.links, self.actions = links, actions
+        self.links, self.actions = links, linear
         settling = conditions.settling
         self._key = (
             # Held by this record, so that no other object takes their place.
             id(model),
-            tuple(id(a.entry) for a in actions),
-            tuple((a.kind, a.index, a.values.tobytes()) for a in actions),
+            tuple(id(a.entry) for a in linear),
+            tuple((a.kind, a.index, a.values.tobytes()) for a in linear),
             theta.tobytes(),
             conditions.preload.tobytes(),
             conditions.progress.tobytes(),
@@ -93,11 +93,11 @@ class _Query:
         return hash(self._key)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Query) and self._key == other._key
+        return isinstance(other, LinearQuery) and self._key == other._key
 
 
 @lru_cache(maxsize=16)
-def _modes(query: _Query) -> PortModes:
+def _modes(query: LinearQuery) -> PortModes:
     """Return the modes, kept for fits that change the parameters of a law alone."""
     across = incidence(query.model)[list(query.links)]
     return modes_across(

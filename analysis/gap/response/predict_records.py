@@ -28,7 +28,7 @@ from jointbench.analysis.gap.response.dynamic_stiffness import (
     invert,
 )
 from jointbench.analysis.gap.response.excitation import Excitation
-from jointbench.analysis.gap.response.link_modes import link_modes
+from jointbench.analysis.gap.response.link_modes import LinearQuery, link_modes
 from jointbench.analysis.gap.response.port_forces import (
     PortLaw,
     filled_lanes,
@@ -157,13 +157,28 @@ def _parts(
     actions: Sequence[Action],
     oversampling: int,
 ) -> _Parts:
-    z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, actions)
-    h = invert(z)
-    bodies = range(len(model.bodies))
-    variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
-    linear = [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies]
-    forces = _link_forces(model, theta, excitation, actions, linear, oversampling)
+    query = LinearQuery(model, theta, excitation.conditions, (), actions)
+    linear, h = _linear_motion(query, excitation)
+    forces = _link_forces(query, excitation, actions, oversampling)
     return _Parts(linear, forces, h)
+
+
+@lru_cache(maxsize=2)
+def _linear_motion(
+    query: LinearQuery, excitation: Excitation
+) -> tuple[list[ComplexArray], ComplexArray]:
+    """Return the motion of the bodies without nonlinear forces, and the receptance.
+
+    Both are kept for calls in which the parameters of a law alone change; they are
+    never written to.
+    """
+    z = dynamic_stiffness(
+        query.model, query.theta, excitation.s, query.conditions, query.actions
+    )
+    h = invert(z)
+    variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
+    bodies = range(len(query.model.bodies))
+    return [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies], h
 
 
 def _summed(model: LumpedModel, parts: _Parts, taper: FloatArray) -> list[ComplexArray]:
@@ -193,11 +208,9 @@ def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> Comple
 
 
 def _link_forces(
-    model: LumpedModel,
-    theta: FloatArray,
+    query: LinearQuery,
     excitation: Excitation,
     actions: Sequence[Action],
-    linear: Sequence[ComplexArray],
     oversampling: int,
 ) -> dict[int, ComplexArray]:
     """Return the damped spectra of all nonlinear link forces, by link.
@@ -214,12 +227,10 @@ def _link_forces(
         for a in nonlinear
         if a.index == link and a.entry.law is not None
     ]
-    motions = []
-    for link in links:
-        first, second = model.ends(link)
-        motions.append(linear[second] - (linear[first] if first >= 0 else 0.0))
-    modes = link_modes(model, theta, excitation.conditions, links, actions)
-    fine = _between_samples(excitation, motions, laws, oversampling)
+    modes = link_modes(query.model, query.theta, query.conditions, links, actions)
+    fine = _between_samples(
+        query, excitation, tuple(links), oversampling, need_velocity(laws)
+    )
     dt = 1 / (excitation.sample_rate * oversampling)
     twice = oversampling >= RESPONSE.extrapolated_steps
     force, half = port_forces(fine, modes, dt, laws, extrapolated=twice)
@@ -229,32 +240,39 @@ def _link_forces(
     return dict(zip(links, spectra, strict=True))
 
 
+@lru_cache(maxsize=2)
 def _between_samples(
+    query: LinearQuery,
     excitation: Excitation,
-    motions: Sequence[ComplexArray],
-    laws: Sequence[PortLaw],
+    links: tuple[int, ...],
     oversampling: int,
+    moving: bool,
 ) -> FloatArray:
     """Return motion and speed of ports, shape (2, n_ports, n_steps, n_columns).
 
     Only the motion is returned if no law depends on the speed. There is one column per
-    record, and zero columns fill the lanes of the time integration.
+    record, and zero columns fill the lanes of the time integration. As the motion of
+    the bodies, it is kept for calls in which the parameters of a law alone change.
 
     Args:
+        query: the linear model.
         excitation: of the records.
-        motions: damped spectra of each port, shape (n_records, n_lines).
-        laws: at the ports.
+        links: at the ports.
         oversampling: steps per sample.
+        moving: whether a law depends on the speed.
     """
+    linear, _ = _linear_motion(query, excitation)
     count = excitation.growth.size * oversampling
     long = excitation.padded * oversampling
     gain = oversampling * _growth(excitation, oversampling)[:, None]
     records = excitation.hit.size
-    powers = (0, 1) if need_velocity(laws) else (0,)
-    out = np.empty((len(powers), len(motions), count, filled_lanes(records)))
+    powers = (0, 1) if moving else (0,)
+    out = np.empty((len(powers), len(links), count, filled_lanes(records)))
     out[..., records:] = 0.0
-    for power in powers:
-        for port, x in enumerate(motions):
+    for port, link in enumerate(links):
+        first, second = query.model.ends(link)
+        x = linear[second] - (linear[first] if first >= 0 else 0.0)
+        for power in powers:
             y = x * excitation.s if power else x
             rows = scipy.fft.irfft(y, long, axis=1)[:, :count]
             np.multiply(rows.T, gain, out=out[power, port, :, :records])

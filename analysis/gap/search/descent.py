@@ -122,7 +122,9 @@ def minimise(
             break
         if rival is not None and k >= 1 and cost - rival > SEARCH.patience * drop:
             break
-        if (
+        if k + 1 == iterations:
+            age += 1  # no step follows: the slopes are those of the step before
+        elif (
             not small
             and age < SEARCH.secant_steps
             and drop > SEARCH.trusted_share * guessed

@@ -151,6 +151,26 @@ class SearchSettings:
         "cost above which a fit is not carried to the end",
         "development campaigns",
     )
+    explained_chi2: float = numerical(
+        1.5,
+        "of the degrees of freedom",
+        "cost below which a start explains the records in a selection round",
+        "what is left is scatter, which is estimated later",
+    )
+    round_pruning_ratio: float = numerical(
+        30.0,
+        "of the best cost",
+        "cost above which a start of another family than one that explains the "
+        "records ends after a selection round",
+        "case 12: two Iwan elements at 50 times the cost took a tenth of the time; "
+        "those that come near have 14 times at most",
+    )
+    rivals_kept: int = numerical(
+        4,
+        "starts",
+        "starts that are kept in any case",
+        "the ranking and the margin need rivals",
+    )
     nominal_restart_chi2: float = numerical(
         100.0,
         "-",

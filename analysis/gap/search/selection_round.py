@@ -115,6 +115,7 @@ def _run_rounds(
         candidate_fits = _best_of_each(
             _keep(_round(candidate_fits, iterations, progress), keep), alike
         )
+        candidate_fits = _without_pruned(bench, candidate_fits)
     best: float | None = None
     done: list[CandidateFit] = []
     for r in candidate_fits:
@@ -131,6 +132,28 @@ def _run_rounds(
     fits = [finish(r.problem, r.x, progress) for r in hopeful]
     fits += [r.fit for r in candidate_fits if r not in hopeful and r.fit is not None]
     return sorted(fits, key=lambda f: score(bench, f))
+
+
+def _without_pruned(
+    bench: Bench, candidate_fits: Sequence[CandidateFit]
+) -> list[CandidateFit]:
+    """Drop starts far above one that explains the records.
+
+    Some rivals are kept for the ranking, and so are laws of the best one's family:
+    they may follow the same loop and converge slowly.
+    """
+    best = candidate_fits[0] if candidate_fits else None
+    explained = SEARCH.explained_chi2 * bench.blocks.dof
+    if best is None or best.cost > explained:
+        return list(candidate_fits)
+    family = best.problem.candidates[-1].effect.family
+    return [
+        r
+        for k, r in enumerate(candidate_fits)
+        if k < SEARCH.rivals_kept
+        or r.cost < SEARCH.round_pruning_ratio * best.cost
+        or r.problem.candidates[-1].effect.family == family
+    ]
 
 
 def finish(
@@ -222,9 +245,15 @@ def _far(
         done: list[CandidateFit] = []
         for r in candidate_fits:
             progress(_trying(r, done))
-            done.append(_run(r, resolution, iterations))
+            done.append(_run(r, resolution, iterations, rival=_last_kept(done, keep)))
         candidate_fits = _keep(done, keep)
     return candidate_fits
+
+
+def _last_kept(done: Sequence[CandidateFit], count: int) -> float | None:
+    """Return the cost that a start must reach to be kept; None while all are."""
+    costs = sorted(r.cost for r in done)
+    return costs[count - 1] if len(costs) >= count else None
 
 
 def _candidate_fit(problem: FitProblem, x: FloatArray) -> CandidateFit:

@@ -173,12 +173,14 @@ def _evaluated(spline: CubicSpline) -> Callable[[float], FloatArray]:
     start, step = float(spline.x[0]), float(spline.x[1] - spline.x[0])
     pieces = np.ascontiguousarray(np.moveaxis(spline.c, 1, 0))
     last = len(pieces) - 1
+    # Plain numbers: with one record an array of one takes ten times as long.
+    rows = pieces[:, :, 0].tolist() if pieces.shape[2] == 1 else pieces
 
     def value(t: float) -> FloatArray:
         at = min(max(int((t - start) / step), 0), last)
-        a, b, c, d = pieces[at]
-        away = t - spline.x[at]
-        return np.asarray(((a * away + b) * away + c) * away + d)
+        a, b, c, d = rows[at]
+        away = t - start - at * step
+        return np.atleast_1d(((a * away + b) * away + c) * away + d)
 
     return value
 

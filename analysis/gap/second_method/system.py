@@ -84,10 +84,8 @@ class System:
         """
         n = self.mass.shape[1]
         x, v = state[..., :n], state[..., n : 2 * n]
-        link_force = (self.stiffness @ x[..., None] + self.damping @ v[..., None])[
-            ..., 0
-        ]
-        acceleration = force[..., None] * self.input - link_force
+        acceleration = force[..., None] * self.input
+        acceleration -= _applied(self.stiffness, x) + _applied(self.damping, v)
         parts, at = [v, acceleration], 2 * n
         for law, ends in zip(self.laws, self.ends, strict=True):
             r, speed, own = x @ ends, v @ ends, state[..., at : at + law.states]
@@ -95,6 +93,13 @@ class System:
             parts.append(law.rate(r, speed, own))
             at += law.states
         return np.concatenate(parts, axis=-1)
+
+
+def _applied(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return each record's matrix times its vector, shape (..., n_records, n)."""
+    if len(matrices) == 1:
+        return np.asarray(vectors @ matrices[0].T)
+    return np.asarray((matrices @ vectors[..., None])[..., 0])
 
 
 def make_system(

@@ -12,6 +12,7 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     JointedBodies,
     NominalBench,
 )
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 
 class BaseName(StrEnum):
@@ -34,6 +35,7 @@ class BaseLayout:
         compliant: directions with a stiffness coordinate, in its order.
         contrasts: log factors of the bolts over the bolt coordinates,
             shape (n_bolts, n_bolts - 1).
+        tuned: free modes whose frequency has a coordinate, with its name.
     """
 
     names: tuple[str, ...]
@@ -41,6 +43,7 @@ class BaseLayout:
     units: tuple[str, ...]
     compliant: tuple[int, ...]
     contrasts: FloatArray
+    tuned: tuple[tuple[int, str], ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -76,12 +79,21 @@ def bolt_name(number: int) -> str:
     return f"bolt contrast {number}"
 
 
-def base_layout(bodies: JointedBodies, nominal: NominalBench) -> BaseLayout:
+def base_layout(
+    bodies: JointedBodies, nominal: NominalBench, band: float = 0.0
+) -> BaseLayout:
     """Return the base coordinates with their priors.
 
     The scatter from bolt to bolt enters as contrasts, orthogonal to the mean: a factor
-    common to all bolts is a scale of their stiffness and damping.
+    common to all bolts is a scale of their stiffness and damping. Where the modal table
+    is uncertain, the frequency of every free mode near the band is a coordinate.
+
+    Args:
+        bodies: modes and rows.
+        nominal: nominal parameters.
+        band: highest frequency with force [Hz].
     """
+    tuned = _tuned(bodies, band) if nominal.table_sd[0] > 0.0 else ()
     count = bodies.bolts.shape[0]
     compliant = tuple(d for d in range(3) if not bodies.rigid[d])
     common = float(np.hypot(nominal.stiffness_sd, nominal.bolt_sd / np.sqrt(count)))
@@ -94,9 +106,23 @@ def base_layout(bodies: JointedBodies, nominal: NominalBench) -> BaseLayout:
     rows.append((BaseName.NORMAL_DAMPING, nominal.damping_sd, "N s/m"))
     rows.append((BaseName.FOOT, nominal.foot_sd[0], "N/m"))
     rows.append((BaseName.FOOT_DAMPING, nominal.foot_sd[1], "N s/m"))
+    rows += [(name, nominal.table_sd[0], "-") for _, name in tuned]
     rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
     names, sd, units = zip(*rows, strict=True)
-    return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count))
+    return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count), tuned)
+
+
+def _tuned(bodies: JointedBodies, band: float) -> tuple[tuple[int, str], ...]:
+    """Return the elastic modes up to some way above the band, with their names."""
+    highest = 2.0 * np.pi * band * STRUCTURE.tuned_band
+    elastic = bodies.omega > STRUCTURE.rigid_share * bodies.omega.max()
+    found = []
+    for mode in np.flatnonzero(elastic & (bodies.omega < highest)):
+        body = int(bodies.body[mode])
+        first = int(np.flatnonzero(elastic & (bodies.body == body))[0])
+        name = f"frequency {bodies.bodies[body]} {mode - first + 1}"
+        found.append((int(mode), name))
+    return tuple(found)
 
 
 def _contrasts(count: int) -> FloatArray:

@@ -74,7 +74,7 @@ def modal_receptances(
     bodies: JointedBodies, state: JointState, s: ComplexArray
 ) -> ComplexArray:
     """Return the displacement of each free mode per modal force, (n_lines, n_modes)."""
-    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
+    omega = state.omega(bodies)
     s = s[:, None]
     dynamic = s**2 + 2.0 * state.loss[bodies.body] * omega * s + omega**2
     return np.asarray(1.0 / (dynamic * state.mass[bodies.body]))
@@ -94,8 +94,8 @@ def joint_compliances(
     a = state.compliance
     one = a / (1.0 + a * state.damping * s[:, None])
     bolts = one[:, None, :] / (state.bolt * torque)[:, None]
-    foot = 1.0 / (state.foot[0] + state.foot[1] * s)
-    feet = np.repeat(foot[:, None], bodies.feet.shape[0] * 3, axis=1)
+    stiffness = np.repeat(state.foot[0] * state.foot_factor, 3)
+    feet = 1.0 / (stiffness + state.foot[1] * s[:, None])
     return np.concatenate([bolts.reshape(s.size, -1), feet], axis=1)
 
 
@@ -143,6 +143,11 @@ def close(
     system = _sums_over_modes(joints, joints, d)
     at = np.arange(len(joints))
     system[:, at, at] += joint_compliances(bodies, state, s, torque)
+    if state.rocking is not None:
+        normal = NORMAL + 3 * np.arange(len(bodies.bolts))
+        # It loses as much energy per cycle as the bolts do.
+        lossy = 1.0 + state.compliance[NORMAL] * state.damping[NORMAL] * s
+        system[:, normal[:, None], normal] += state.rocking / lossy[:, None, None]
     across = _sums_over_modes(joints, columns, d)
     left = _solved(system, _sums_over_modes(joints, rows, d))
     response = _sums_over_modes(rows, columns, d)
@@ -158,9 +163,10 @@ def _ends(
     bodies: JointedBodies, state: JointState, columns: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return rows and columns, with those of attached things at their ends."""
-    places = [bodies.places[a.place].rows for a in state.attached]
+    places = [a.rows(bodies) for a in state.attached]
+    sensors = bodies.sensors if state.sensors is None else state.sensors
     return (
-        np.concatenate([bodies.sensors, *places]),
+        np.concatenate([sensors, *places]),
         np.concatenate([columns, *places]),
     )
 
@@ -178,7 +184,7 @@ def _attached_forces(
         s: Laplace variable, shape (n_lines,).
         h: response without them, shape (n_lines, n_rows, n_columns).
     """
-    counts = [len(bodies.places[a.place].rows) for a in state.attached]
+    counts = [len(a.rows(bodies)) for a in state.attached]
     stiffness = [dynamic_stiffness(a, s) for a in state.attached]
     z = np.repeat(np.stack(stiffness, axis=1), counts, axis=1)[:, :, None]
     count = z.shape[1]
@@ -216,8 +222,8 @@ def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> Clo
 
 
 def dynamic_stiffness(attached: Attached, s: ComplexArray) -> ComplexArray:
-    """Return force per displacement of a mass or an oscillator [N/m], (n_lines,)."""
-    inertia = attached.mass * s**2
+    """Return force per displacement of what is attached [N/m], shape (n_lines,)."""
+    inertia = attached.mass * s**2 + attached.stiffness
     if attached.frequency is None:
         return np.asarray(inertia)
     omega = 2.0 * np.pi * attached.frequency
@@ -243,7 +249,7 @@ def response_slopes(
         By coordinate, shape (n_lines, n_rows, n_columns) each.
     """
     ends = closed_rows(found, bodies, state)
-    slopes = _modal_slopes(found, ends, bodies, state)
+    slopes = _modal_slopes(found, ends, bodies, state, layout)
     left = ends.left.transpose(0, 2, 1)
     for name, (joints, change) in _compliance_slopes(
         found, bodies, state, layout
@@ -254,11 +260,14 @@ def response_slopes(
 
 
 def _modal_slopes(
-    found: Closure, ends: ClosedRows, bodies: JointedBodies, state: JointState
+    found: Closure,
+    ends: ClosedRows,
+    bodies: JointedBodies,
+    state: JointState,
+    layout: BaseLayout,
 ) -> dict[str, ComplexArray]:
-    """Return the slopes by modulus and mass of each body and by the damping ratio."""
-    root = np.sqrt(state.modulus)[bodies.body]
-    omega, s = bodies.omega * root, found.s[:, None]
+    """Return the slopes by modulus, mass, damping ratio and frequencies."""
+    omega, s = state.omega(bodies), found.s[:, None]
     d = modal_receptances(bodies, state, found.s)
     square = -(d**2) * state.mass[bodies.body]
     loss = state.loss[bodies.body]
@@ -276,6 +285,8 @@ def _modal_slopes(
         slopes[modulus_name(name)] = across(by_modulus, modes)
         slopes[loss_name(name)] = across(by_loss, modes)
         slopes[mass_name(name)] = across(-d, modes)
+    for mode, name in layout.tuned:
+        slopes[name] = across(2.0 * by_modulus, slice(mode, mode + 1))
     return slopes
 
 
@@ -312,9 +323,8 @@ def _compliance_slopes(
         change = -whole * layout.contrasts[:, k][None, :, None]
         slopes[bolt_name(k + 1)] = every, change.reshape(s.size, -1)
     feet = slice(3 * count, None)
-    stiffness, damping = state.foot
+    stiffness, damping = np.repeat(state.foot[0] * state.foot_factor, 3), state.foot[1]
     foot = -1.0 / (stiffness + damping * s) ** 2
-    wide = np.ones((1, 3 * bodies.feet.shape[0]))
-    slopes[BaseName.FOOT] = feet, foot * stiffness * wide
-    slopes[BaseName.FOOT_DAMPING] = feet, foot * damping * s * wide
+    slopes[BaseName.FOOT] = feet, foot * stiffness
+    slopes[BaseName.FOOT_DAMPING] = feet, foot * damping * s
     return slopes

@@ -7,11 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.analysis.gap.structure_bench.base_layout import (
-    BaseLayout,
-    bolt_name,
-    stiffness_name,
-)
+from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_bench.closed_response import (
     Closure,
     close,
@@ -20,19 +16,28 @@ from jointbench.analysis.gap.structure_bench.closed_response import (
 from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.hit_frames import HitFrame
 from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.landing import COLUMNS, point_columns
-from jointbench.analysis.gap.structure_bench.port_integration import (
-    closed_modes,
-    integrate_sliders,
-    port_sliders,
+from jointbench.analysis.gap.structure_bench.landing import (
+    COLUMNS,
+    landing_slopes,
+    landing_weights,
+    point_columns,
 )
+from jointbench.analysis.gap.structure_bench.port_integration import (
+    acting_laws,
+    averaging,
+    closed_modes,
+    integrate_laws,
+)
+from jointbench.analysis.gap.structure_bench.port_laws import LawForm, law_ports
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TorqueClosure:
-    """The closed response at one torque, with the records made at it."""
+    """The closed response at one torque, with its state and the records made at it."""
 
     closure: Closure
+    state: JointState
     records: IntArray
 
 
@@ -75,9 +80,19 @@ class HitModel:
         """Return the response with the forces of the laws at the ports."""
         rows = self.struck(weights)
         if self.forces is not None:
-            for one in self.closures:
-                forces = self.forces[one.records]
-                rows[one.records] += self._pushed(one.closure.response, forces)
+            rows += self.pushed(self.forces)
+        return rows
+
+    def pushed(self, forces: ComplexArray) -> FloatArray:
+        """Return the response to forces across the ports.
+
+        Args:
+            forces: transformed, shape (n_records, n_ports, n_lines).
+        """
+        rows = np.empty((len(forces), *self.shape))
+        for one in self.closures:
+            own = forces[one.records]
+            rows[one.records] = self._pushed(one.closure.response, own)
         return rows
 
     def slopes(
@@ -91,39 +106,23 @@ class HitModel:
         Args:
             weights: of the columns of each record's point, shape (n_records, 9).
             layout: base coordinates.
-            changes: slopes of the forces of the laws by each coordinate; if there are
-                none, those forces change with the stiffness of their ports only.
+            changes: slopes of the forces of the laws by each coordinate.
         """
         names = layout.names
         rows = np.empty((len(weights), len(names), *self.shape))
         for one in self.closures:
             bodies = self.campaign.bodies
-            slopes = response_slopes(one.closure, bodies, self.state, layout)
+            slopes = response_slopes(one.closure, bodies, one.state, layout)
             for k, name in enumerate(names):
                 found = self._struck(slopes[name], one.records, weights)
                 if self.forces is not None:
                     forces = self.forces[one.records]
                     found += self._pushed(slopes[name], forces)
-                    scaled = forces * self._scaling(name, layout)[:, None]
-                    if changes:
-                        scaled = changes[k][one.records]
-                    if np.any(scaled):
-                        found += self._pushed(one.closure.response, scaled)
+                if changes:
+                    own = changes[k][one.records]
+                    found += self._pushed(one.closure.response, own)
                 rows[one.records, k] = found
         return rows
-
-    def _scaling(self, name: str, layout: BaseLayout) -> FloatArray:
-        """Return the slope of the log stiffness of each port, shape (n_ports,)."""
-        laws = self.state.laws
-        ports = np.array(() if laws is None else laws.ports, dtype=int)
-        slope = np.zeros(ports.size)
-        for direction in layout.compliant:
-            if name == stiffness_name(direction):
-                slope[ports % 3 == direction] = 1.0
-        for k in range(layout.contrasts.shape[1]):
-            if name == bolt_name(k + 1):
-                slope = layout.contrasts[ports // 3, k]
-        return slope
 
     def _struck(
         self, response: ComplexArray, records: IntArray, weights: FloatArray
@@ -151,7 +150,41 @@ class HitModel:
     def _channels(self) -> ComplexArray:
         """Return the transfer from displacement to each channel."""
         s = self.frame.s[:, None]
-        return np.asarray(s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.lag))
+        found = s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.lag)
+        for one in self.state.cables:
+            p = one.period * s[:, 0]
+            found[:, one.channel] /= 1.0 + 2.0 * one.damping * p + p**2
+        return np.asarray(found)
+
+
+def direction_rows(model: HitModel, landing: FloatArray, sd: FloatArray) -> FloatArray:
+    """Return derivatives of the response by tilts, offsets and gain of each hit.
+
+    A hit beside its point slips other sliders, so the forces of laws are followed.
+
+    Args:
+        model: at the landing points.
+        landing: tilts [rad] and offsets [m] of each hit, shape (n_records, 4).
+        sd: of the five directions, shape (5,).
+
+    Returns:
+        For directions of unit sd, shape (n_records, 5, n_channels, count).
+    """
+    slopes = landing_slopes(landing) * sd[:, None]
+    rows = np.stack([model.struck(slopes[:, k]) for k in range(sd.size)], axis=1)
+    if model.forces is None:
+        return rows
+    step, parts = STRUCTURE.landing_step, STRUCTURE.law_slope_parts
+    weights = landing_weights(landing)
+
+    def forces(moved: FloatArray) -> ComplexArray:
+        return law_forces(model.campaign, model.state, model.frame, moved, parts)
+
+    first = forces(weights)
+    for k in range(sd.size):
+        change = forces(weights + step * slopes[:, k]) - first
+        rows[:, k] += model.pushed(change / step)
+    return rows
 
 
 def hit_model(
@@ -167,35 +200,41 @@ def hit_model(
     """
     bodies = campaign.bodies
     columns = [point_columns(p) for p in bodies.points]
-    if state.laws is not None:
+    if state.laws:
         rows = bodies.bolts.reshape(-1, bodies.omega.size)
-        columns.append(rows[list(state.laws.ports)])
+        columns.append(rows[list(law_ports(state.laws))])
     stacked = np.concatenate(columns)
-    torques = _torques(campaign, state)
     closures = tuple(
-        TorqueClosure(close(bodies, state, frame.s, stacked, torque), records)
-        for torque, records in torques
+        TorqueClosure(close(bodies, own, frame.s, stacked, torque), own, records)
+        for torque, own, records in _torques(campaign, state)
     )
     forces = None
-    if state.laws is not None:
+    if state.laws:
         forces = law_forces(campaign, state, frame, weights)
     return HitModel(campaign, state, frame, closures, forces)
 
 
-def _torques(campaign: HitCampaign, state: JointState) -> list[tuple[float, IntArray]]:
-    """Return factors of the torque, each with its records."""
+def _torques(
+    campaign: HitCampaign, state: JointState
+) -> list[tuple[float, JointState, IntArray]]:
+    """Return factors of the torque, each with the state at it and its records."""
     torque = campaign.hits.torque
-    if state.exponent == 0.0:
-        return [(1.0, np.arange(torque.size))]
-    reference = campaign.nominal.torque_reference
-    return [
-        (float((one / reference) ** state.exponent), np.flatnonzero(torque == one))
-        for one in np.unique(torque)
-    ]
+    if state.exponent == 0.0 and state.damping_exponent == 0.0:
+        return [(1.0, state, np.arange(torque.size))]
+    found = []
+    for one in np.unique(torque):
+        ratio = float(one / campaign.nominal.torque_reference)
+        own = ratio**state.exponent, state.at_torque(ratio)
+        found.append((*own, np.flatnonzero(torque == one)))
+    return found
 
 
 def law_forces(
-    campaign: HitCampaign, state: JointState, frame: HitFrame, weights: FloatArray
+    campaign: HitCampaign,
+    state: JointState,
+    frame: HitFrame,
+    weights: FloatArray,
+    parts: int | None = None,
 ) -> ComplexArray:
     """Integrate the laws at the ports of a state.
 
@@ -204,12 +243,18 @@ def law_forces(
         state: with laws.
         frame: transforms of the window.
         weights: force columns of each record, shape (n_records, 9).
+        parts: steps of the integration per raw sample; None for those of the laws.
 
     Returns:
         Transformed forces across the ports, shape (n_records, n_ports, n_lines).
     """
     hits, bodies = campaign.hits, campaign.bodies
     step = hits.filter.step
+    if parts is None:
+        friction = all(law.kind == LawForm.FRICTION for law in state.laws)
+        parts = STRUCTURE.slider_steps if friction else STRUCTURE.law_steps
+        if frame.count < hits.force.shape[1]:
+            parts //= STRUCTURE.window_coarseness
     # Beyond the window: an end of the forces within it would ring back into it.
     length = frame.size * step
     raw = np.zeros((len(hits.raw_force), length))
@@ -217,15 +262,18 @@ def law_forces(
     raw[:, :known] = hits.raw_force[:, :known]
     shapes = np.stack([point_columns(p) for p in bodies.points])[hits.point]
     columns = np.einsum("rc,rcn->rn", weights, shapes)
-    ports = 0 if state.laws is None else len(state.laws.ports)
+    ports = len(law_ports(state.laws))
+    preload = hits.torque / campaign.nominal.torque_reference
     found = np.empty((len(raw), ports, len(frame.s)), dtype=np.complex128)
-    for torque, records in _torques(campaign, state):
-        forces = integrate_sliders(
-            closed_modes(bodies, state, torque),
-            port_sliders(bodies, state, torque),
+    for torque, own, records in _torques(campaign, state):
+        forces = integrate_laws(
+            closed_modes(bodies, own, torque),
+            acting_laws(bodies, own, torque),
             columns[records],
             raw[records],
-            hits.sample_rate * step,
+            (hits.sample_rate * step, parts),
+            preload[records],
         )
         found[records] = frame.transform(hits.filter(forces))
+    found /= averaging(frame.s, hits.sample_rate * step, parts)
     return found

@@ -5,7 +5,7 @@ Directions at the bolts are held as compliances, so that a rigid direction is ex
 zero and an effect that makes it compliant starts from zero with a finite slope.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,12 +35,36 @@ class Attached:
         mass: [kg].
         frequency: of the oscillator [Hz]; None for a rigid mass.
         damping: ratio of the oscillator [-].
+        stiffness: of a spring to the ground [N/m].
+        normal: True if it moves along the direction of its hit or sensor only.
     """
 
     place: int
     mass: float
     frequency: float | None = None
     damping: float = 0.0
+    stiffness: float = 0.0
+    normal: bool = False
+
+    def rows(self, bodies: JointedBodies) -> FloatArray:
+        """Return the motion of its place, shape (n_directions, n_modes)."""
+        place = bodies.places[self.place]
+        return place.normal if self.normal else place.rows
+
+
+@dataclass(frozen=True, slots=True)
+class CableResonance:
+    """Low pass of second order in the signal of a channel.
+
+    Attributes:
+        channel: index of the channel.
+        period: over 2 pi [s]; 0 is no low pass.
+        damping: ratio [-].
+    """
+
+    channel: int
+    period: float
+    damping: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,10 +80,19 @@ class JointState:
         bolt: factor on stiffness and damping of each bolt [-], shape (n_bolts,).
         foot: stiffness [N/m] and damping [N s/m] of each foot.
         exponent: power of stiffness and damping of the bolts in their torque [-].
+        damping_exponent: further power of their damping in the torque [-].
+        foot_factor: on the stiffness of each foot [-], shape (n_feet,).
+        rocking: compliance of the joint that couples the normal directions of the
+            bolts [m/N], shape (n_bolts, n_bolts); None for none.
+        sensors: motion along each sensor, shape (n_channels, n_modes); None for that
+            of the bodies.
+        cables: resonances in the signals of channels.
+        tuning: factor on the natural frequency of each free mode [-], shape
+            (n_modes,).
         attached: masses and oscillators.
         gain: relative gain of each channel less 1 [-], shape (n_channels,).
         lag: of each channel [s], shape (n_channels,).
-        laws: nonlinear laws at the bolts, or None.
+        laws: nonlinear laws at the bolts.
     """
 
     modulus: FloatArray
@@ -71,14 +104,35 @@ class JointState:
     foot: tuple[float, float]
     gain: FloatArray
     lag: FloatArray
+    foot_factor: FloatArray
+    tuning: FloatArray
     exponent: float = 0.0
+    damping_exponent: float = 0.0
+    rocking: FloatArray | None = None
+    sensors: FloatArray | None = None
+    cables: tuple[CableResonance, ...] = ()
     attached: tuple[Attached, ...] = ()
-    laws: PortLaws | None = None
+    laws: tuple[PortLaws, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "modulus", "mass", "loss", "compliance", "damping", "bolt")
-        freeze(self, "gain", "lag")
+        freeze(self, "gain", "lag", "foot_factor", "tuning")
+
+    def omega(self, bodies: JointedBodies) -> FloatArray:
+        """Return the natural angular frequencies of the free modes [rad/s]."""
+        root = np.sqrt(self.modulus)[bodies.body]
+        return np.asarray(bodies.omega * root * self.tuning)
+
+    def at_torque(self, ratio: float) -> "JointState":
+        """Return the state with the damping of a torque.
+
+        Args:
+            ratio: torque over the reference one [-].
+        """
+        if self.damping_exponent == 0.0:
+            return self
+        return replace(self, damping=self.damping * ratio**self.damping_exponent)
 
 
 def state_of(
@@ -93,6 +147,9 @@ def state_of(
     along = factor[BaseName.NORMAL_DAMPING]
     foot = factor[BaseName.FOOT], factor[BaseName.FOOT_DAMPING]
     channels = len(bodies.channels)
+    tuning = np.ones(bodies.omega.size)
+    for mode, name in layout.tuned:
+        tuning[mode] = factor[name]
     contrast = base[layout.sd.size - layout.contrasts.shape[1] :]
     return JointState(
         modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
@@ -104,6 +161,8 @@ def state_of(
         foot=(nominal.foot[0] * foot[0], nominal.foot[1] * foot[1]),
         gain=np.zeros(channels),
         lag=np.zeros(channels),
+        foot_factor=np.ones(len(bodies.feet)),
+        tuning=tuning,
     )
 
 

@@ -19,14 +19,17 @@ class MassPlace:
     Attributes:
         name: site name, for example ``"P1"`` or ``"top bolt 0"``.
         rows: its motion in the known directions, shape (n_directions, n_modes).
+        normal: its motion along the direction of a hit or a sensor, shape
+            (1, n_modes); (0, n_modes) where it has no such direction.
     """
 
     name: str
     rows: FloatArray
+    normal: FloatArray
 
     def __post_init__(self) -> None:
-        """Make the array read-only."""
-        freeze(self, "rows")
+        """Make the arrays read-only."""
+        freeze(self, "rows", "normal")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,6 +71,8 @@ class JointedBodies:
         points: hammer points.
         places: points at which something may be attached.
         rigid: directions without relative motion at the bolts in the model.
+        across: motion at right angles to each sensor along two axes, shape
+            (n_channels, 2, n_modes); empty if the table does not list it.
     """
 
     bodies: tuple[str, ...]
@@ -80,10 +85,11 @@ class JointedBodies:
     points: tuple[HitPoint, ...]
     places: tuple[MassPlace, ...]
     rigid: tuple[bool, bool, bool]
+    across: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "body", "omega", "bolts", "feet", "sensors")
+        freeze(self, "body", "omega", "bolts", "feet", "sensors", "across")
 
     @property
     def joint_rows(self) -> FloatArray:
@@ -110,6 +116,10 @@ class NominalBench:
         aim_sd: sd of the landing point in each direction [m].
         tilt_sd: sd of the direction of a hit [rad].
         torque_reference: bolt torque that the stiffness belongs to [N m].
+        bolt_places: of the bolts in the plane of the joint [m], shape (n_bolts, 2);
+            empty if they are not stated.
+        table_sd: sd of the log frequencies of the modal table [-], and of its shapes as
+            a share of their norm [-]; zeros for an exact table.
     """
 
     stiffness: FloatArray
@@ -125,7 +135,9 @@ class NominalBench:
     aim_sd: float
     tilt_sd: float
     torque_reference: float
+    bolt_places: FloatArray
+    table_sd: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "stiffness", "damping")
+        freeze(self, "stiffness", "damping", "bolt_places")

@@ -6,12 +6,15 @@ import numpy as np
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.structure_bench.base_layout import base_layout
 from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_bench.structure_bench import (
     StructureBench,
     record_blocks,
 )
-from jointbench.analysis.gap.structure_bench.structure_effects import (
+from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
+)
+from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_candidates,
     without_effects,
@@ -42,7 +45,7 @@ def make_structure_bench(
     peak = np.abs(hits.response).max(axis=2)
     return StructureBench(
         campaign=campaign,
-        layout=base_layout(campaign.bodies, campaign.nominal),
+        layout=base_layout(campaign.bodies, campaign.nominal, hits.band),
         entries=entries,
         candidates=structure_candidates(entries, campaign),
         floor=STRUCTURE.coarse_floor,
@@ -61,18 +64,34 @@ def _scales(campaign: HitCampaign) -> dict[str, float]:
     """Return the sizes that scale starts and bounds of effects."""
     bodies, nominal, hits = campaign.bodies, campaign.nominal, campaign.hits
     # The rigid motions of a mass-normalised table: phi = 1 / sqrt(mass) along an axis.
-    rigid = bodies.omega < 1e-3 * bodies.omega.max()
+    rigid = bodies.omega < STRUCTURE.rigid_share * bodies.omega.max()
     motion = np.sum(bodies.points[0].rows[:, rigid] ** 2, axis=1)
     mass = 1.0 / float(np.min(motion))
     known = nominal.stiffness[np.isfinite(nominal.stiffness)]
     inside = (0.5 * np.pi * hits.band) ** 2 * mass / 2 / bodies.bolts.shape[0]
     stiffness = float(np.exp(np.mean(np.log(known)))) if known.size else inside
     force = float(np.abs(hits.raw_force).max())
+    travel = force / stiffness / bodies.bolts.shape[0]
+    speed = travel * np.pi * hits.band
+    places = nominal.bolt_places
+    moment = (
+        stiffness
+        * max(
+            float(np.sum(places.var(axis=0))) if len(places) else 0.0,
+            STRUCTURE.least_arm**2,
+        )
+        * max(len(places), 1)
+    )
     return {
         "one": 1.0,
         "mass": mass,
+        "stiffness": stiffness,
         "compliance": 1.0 / stiffness,
-        "travel": force / stiffness / bodies.bolts.shape[0],
+        "rocking": 1.0 / moment,
+        "travel": travel,
+        "stiffness/travel": stiffness / travel,
+        "stiffness/travel^2": stiffness / travel**2,
+        "damping/speed": float(nominal.damping[NORMAL]) / speed,
         "band": hits.band,
         "sample time": 1.0 / hits.sample_rate,
     }

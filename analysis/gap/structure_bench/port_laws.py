@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Nonlinear laws at the bolts, as forces beyond their linear springs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import IntEnum
 
 import numpy as np
 
@@ -9,25 +10,47 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 
+class LawForm(IntEnum):
+    """Kind of a law; the comment gives the force at a relative motion r."""
+
+    FRICTION = 0  # share k (sum of weight times clipped stretch - r)
+    STOP = 1  # k max(r - g, 0)
+    CUBIC = 2  # k3 r^3
+    QUADRATIC = 3  # k2 r^2
+    SQUARE_DAMPING = 4  # c2 v |v|
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class PortLaws:
-    """Laws at the ports, each a joint freedom of a bolt.
+    """One law at some ports, each a joint freedom of a bolt.
 
     Attributes:
-        ports: joint freedoms with a law, shape (n_ports,).
-        share: share of the linear stiffness of the port held by sliders [-].
+        ports: joint freedoms with the law, shape (n_ports,).
+        size: share of the linear stiffness of the port that sliders hold [-], k [N/m],
+            k3 [N/m^3], k2 [N/m^2] or c2 [N s^2/m^2], as the kind states.
         slips: displacement at which each slider slips [m], shape (n_sliders,).
         weights: share of each slider in them; they sum to 1, shape (n_sliders,).
+        kind: of the law.
+        gap: clearance of a stop [m].
+        preload: power of the slip displacements in the bolt torque [-].
     """
 
     ports: tuple[int, ...]
-    share: float
-    slips: FloatArray
-    weights: FloatArray
+    size: float
+    slips: FloatArray = field(default_factory=lambda: np.zeros(0))
+    weights: FloatArray = field(default_factory=lambda: np.zeros(0))
+    kind: LawForm = LawForm.FRICTION
+    gap: float = 0.0
+    preload: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "slips", "weights")
+
+
+def law_ports(laws: tuple[PortLaws, ...]) -> tuple[int, ...]:
+    """Return the joint freedoms of all laws, in their order."""
+    return tuple(port for law in laws for port in law.ports)
 
 
 def iwan_sliders(largest: float, power: float) -> tuple[FloatArray, FloatArray]:

@@ -26,14 +26,12 @@ from jointbench.analysis.gap.structure_bench.hit_frames import (
 )
 from jointbench.analysis.gap.structure_bench.hit_response import (
     HitModel,
+    direction_rows,
     hit_model,
     law_forces,
 )
 from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
-from jointbench.analysis.gap.structure_bench.landing import (
-    landing_slopes,
-    landing_weights,
-)
+from jointbench.analysis.gap.structure_bench.landing import landing_weights
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_state,
@@ -103,6 +101,24 @@ class StructureBench:
         return ()
 
     @property
+    def table_floor(self) -> float:
+        """Error of the modal table as a share of the peak [-]."""
+        stated = STRUCTURE.shape_floor * self.campaign.nominal.table_sd[1]
+        return max(STRUCTURE.table_floor, stated)
+
+    @property
+    def coherence(self) -> float:
+        """Hits over hit points where the modal table is uncertain; 1 for exact ones.
+
+        The error of a table is the same in all hits of a point, so more hits do not
+        average it out: fits give it as much weight as one hit of each point has.
+        """
+        if self.campaign.nominal.table_sd[1] == 0.0:
+            return 1.0
+        points = np.unique(self.campaign.hits.point).size
+        return len(self.campaign.hits.names) / points
+
+    @property
     def expanded(self) -> bool:
         """Whether hits are expanded about where they landed."""
         return bool(np.any(self.landing))
@@ -146,6 +162,11 @@ class StructureBench:
         values = [values_of(self, term) for term in terms]
         return structure_state(self.entries, self.campaign, bare, terms, values)
 
+    def nonlinear(self, candidates: Sequence[Candidate]) -> bool:
+        """Return whether any of the effects is integrated in time."""
+        names = {e.effect.name for e in self.entries if e.nonlinear}
+        return any(c.effect.name in names for c in candidates)
+
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""
         count = window_count(self.campaign.hits, window)
@@ -159,7 +180,7 @@ class StructureBench:
     ) -> FloatArray:
         """Predict the responses, shape (n_records, n_channels, count)."""
         weights = landing_weights(self.landing)
-        return self._model(base, terms, window).response(weights)
+        return self.model(base, terms, window).response(weights)
 
     def residual(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
@@ -177,7 +198,7 @@ class StructureBench:
     ) -> FloatArray:
         """Return the slopes of the residual by the base, shape (n_rows, n_base)."""
         weights = landing_weights(self.landing)
-        model = self._model(base, terms, resolution.window)
+        model = self.model(base, terms, resolution.window)
         changes = self._law_slopes(model, base, terms)
         rows = model.slopes(weights, self.layout, changes)
         white = self._whitened(rows)
@@ -211,34 +232,32 @@ class StructureBench:
             landing: tilts and offsets of each hit, shape (n_records, 4).
             floor: error of the model, as a share of the peak [-].
         """
-        model = self._model(base, terms, None)
-        weights = landing_slopes(landing) * self.direction_sd[:, None]
-        rows = np.stack(
-            [model.struck(weights[:, k]) for k in range(weights.shape[1])], axis=1
-        )
+        moved = replace(self, landing=landing, kept=_frames_of(self.kept))
+        model = moved.model(base, terms, None)
+        rows = direction_rows(model, landing, self.direction_sd)
         peak = np.abs(self.campaign.hits.response).max(axis=2)
-        sigma = np.hypot(self.campaign.hits.noise, floor * peak)
-        kept = {k: v for k, v in self.kept.items() if k[0] == "frame"}
-        return replace(
-            self,
-            landing=landing,
-            floor=floor,
-            sigma=sigma,
-            directions=rows,
-            kept=kept,
-        )
+        known = np.hypot(self.campaign.hits.noise, floor * peak)
+        sigma = known * np.sqrt(self.coherence)
+        kept = _frames_of(self.kept)
+        return replace(moved, floor=floor, sigma=sigma, directions=rows, kept=kept)
 
     def landed(
-        self, base: FloatArray, terms: Sequence[Term]
+        self, base: FloatArray, terms: Sequence[Term], window: float | None = None
     ) -> tuple[FloatArray, FloatArray]:
         """Return the most likely tilts and offsets of each hit, and its gain.
+
+        Args:
+            base: coordinates.
+            terms: effects.
+            window: of the records [s]; None for all of them.
 
         Returns:
             Landing, shape (n_records, 4), and relative gain, shape (n_records,).
         """
-        modelled = self.response(base, terms, None)
-        r = modelled - self.campaign.hits.response - self._expected(modelled.shape[2])
-        scaled = self._scaled(modelled.shape[2])
+        modelled = self.response(base, terms, window)
+        count = modelled.shape[2]
+        r = modelled - self.campaign.hits.response[:, :, :count] - self._expected(count)
+        scaled = self._scaled(count)
         flat = (r / self.sigma[:, :, None]).reshape(len(r), -1)
         found = directions_found(scaled, flat) * self.direction_sd
         return found[:, :4], found[:, 4]
@@ -281,25 +300,26 @@ class StructureBench:
     def _law_slopes(
         self, model: HitModel, base: FloatArray, terms: Sequence[Term]
     ) -> list[ComplexArray]:
-        """Return slopes of the forces of laws by the base, in short windows only.
+        """Return slopes of the forces of laws by the base.
 
-        Over whole records they would take most of the time of a fit that is then
-        close to its minimum.
+        The forces are followed: a slider that sticks moves with the joint, one that
+        slips holds its force, so a small difference is their slope. Held forces make
+        a fit to whole records creep, since the base moves the phase of every slip.
         """
-        samples = len(self.landing) * model.frame.count
-        if model.forces is None or samples > STRUCTURE.law_slope_samples:
+        if model.forces is None:
             return []
         weights, step = landing_weights(self.landing), STRUCTURE.law_slope_step
-        changes = []
-        for k in range(base.size):
-            moved = base.copy()
-            moved[k] += step
-            state = self.state(moved, terms)
-            forces = law_forces(self.campaign, state, model.frame, weights)
-            changes.append((forces - model.forces) / step)
-        return changes
 
-    def _model(
+        def forces(x: FloatArray) -> ComplexArray:
+            state, parts = self.state(x, terms), STRUCTURE.law_slope_parts
+            return law_forces(self.campaign, state, model.frame, weights, parts)
+
+        first = forces(base)
+        return [
+            (forces(base + step * unit) - first) / step for unit in np.eye(base.size)
+        ]
+
+    def model(
         self, base: FloatArray, terms: Sequence[Term], window: float | None
     ) -> HitModel:
         """Return the model at a state; the last one of a window is kept."""
@@ -345,6 +365,11 @@ class StructureBench:
             ("white", count), lambda: whitening_of(self._scaled(count))
         )
         return white(flat)
+
+
+def _frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:
+    """Return what does not depend on where hits landed."""
+    return {key: value for key, value in kept.items() if key[0] == "frame"}
 
 
 def record_blocks(campaign: HitCampaign) -> Blocks:

@@ -25,12 +25,40 @@ class StructureSettings:
         "with 64 samples a window at 2 kHz was wrong by 8 % at its end, with 240 by "
         "less than the floor",
     )
-    integration_steps: int = numerical(
+    slider_steps: int = numerical(
         4,
         "steps/sample",
-        "steps of the time integration per raw sample",
+        "steps of the time integration per raw sample where all laws are friction",
         "within 1e-4 of the peak of an adaptive integrator (a test); 2 steps 1.3e-4, 1 "
         "step 5e-4",
+    )
+    law_steps: int = numerical(
+        8,
+        "steps/sample",
+        "the same with a stop or another law",
+        "within 1e-4 as well (a test); 4 steps 3e-4",
+    )
+    window_coarseness: int = numerical(
+        2,
+        "-",
+        "divisor of these steps in windows of the search",
+        "1.3e-4 and 3e-4, below the floor",
+    )
+    slider_corrections: int = numerical(
+        3, "-", "corrections of the forces of sliders in one step", "a prototype"
+    )
+    law_corrections: int = numerical(
+        6,
+        "-",
+        "the same where a law is not friction: a stop is several times stiffer than "
+        "its bolt",
+        "each reduces the error of a stop by 3 or more",
+    )
+    rest_steps: int = numerical(
+        32,
+        "samples",
+        "samples between two questions whether a slider can slip again",
+        "a question takes as long as a step",
     )
     sliders: int = numerical(
         24,
@@ -38,15 +66,17 @@ class StructureSettings:
         "sliders of an Iwan element at a port",
         "a prototype on 24 campaigns",
     )
-    law_slope_samples: int = numerical(
-        12_000,
-        "samples",
-        "samples of all records up to which slopes of the forces of laws by the base "
-        "are computed",
-        "computing time: twenty hits in a window of 60 ms",
+    law_slope_parts: int = numerical(
+        1,
+        "steps/sample",
+        "steps of the time integration per raw sample for slopes of the forces of laws",
+        "forces within 5e-4; a slope need not be better, and costs a quarter",
     )
     law_slope_step: float = numerical(
         1e-5, "-", "difference step of a base coordinate for them"
+    )
+    landing_step: float = numerical(
+        1e-4, "sd", "difference step of a direction of a hit for them"
     )
     coarse_floor: float = numerical(
         0.01,
@@ -59,6 +89,22 @@ class StructureSettings:
         "of the peak",
         "error of the modal table, as a share of the peak of a record and channel",
         "exact tables: above what is left of second-order aim, which is 0.03 %",
+    )
+    shape_floor: float = numerical(
+        1.0,
+        "of the sd",
+        "floor as a multiple of the stated sd of the shapes of the modal table",
+        "a response is a sum of products of shapes, each wrong by as much",
+    )
+    tuned_band: float = numerical(
+        1.3,
+        "of the band",
+        "free modes up to there have a frequency of their own where the modal table is "
+        "uncertain",
+        "modes above act by their static part, which hardly changes",
+    )
+    rigid_share: float = numerical(
+        1e-3, "of the highest", "frequency below which a free mode is a rigid motion"
     )
     gain_sd: float = numerical(
         0.001,
@@ -99,6 +145,19 @@ class StructureSettings:
         "chi2/dof above which hits are not expanded about where they landed",
         "far from the records the residual is not one of landing",
     )
+    law_windows: tuple[float, float] = numerical(
+        (0.02, 0.06),
+        "s",
+        "windows in which a fit with nonlinear laws approaches whole records, on one "
+        "record of each condition",
+        "a step in whole records costs ten times as much",
+    )
+    law_rounds: int = numerical(
+        3, "rounds", "most rounds of such a fit with where the hits landed"
+    )
+    law_iterations: int = numerical(
+        12, "steps", "most steps of a fit with nonlinear laws in one of these windows"
+    )
     whole_iterations: int = numerical(
         8, "steps", "most steps of a fit to whole records in one round"
     )
@@ -112,10 +171,13 @@ class StructureSettings:
         2, "starts", "starts of a candidate that are fitted in a short window"
     )
     leaders: int = numerical(
-        4,
+        6,
         "effects",
         "effects that are fitted by the drop of their directed tests",
-        "a prototype on 24 campaigns",
+        "four of a prototype with ten effects; the catalogue has twenty-two",
+    )
+    leading_sites: int = numerical(
+        2, "sites", "most sites at which one effect is fitted for its directed tests"
     )
     longer_fits: int = numerical(
         5, "fits", "fits carried to a longer window", "a prototype on 24 campaigns"
@@ -127,6 +189,12 @@ class StructureSettings:
         3.0,
         "of the best cost",
         "cost in a longer window above which a fit is not carried to whole records",
+    )
+    least_arm: float = numerical(
+        0.01,
+        "m",
+        "extent of the bolts below which the joint cannot rock about an axis",
+        "bolts in a row",
     )
     least_direction: float = numerical(
         1e-30,

@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.identification.descent import descend, joined
 from jointbench.analysis.structures.identification.solution_branches import (
     admissible,
     followed,
     in_order,
     is_open,
     same_branch,
+)
+from jointbench.analysis.structures.identification.stiffness_descent import (
+    descend,
+    joined,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,

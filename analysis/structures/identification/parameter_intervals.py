@@ -6,9 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.identification.descent import descend, with_value
 from jointbench.analysis.structures.identification.solution_branches import (
     LARGEST_LOG_SD,
+)
+from jointbench.analysis.structures.identification.stiffness_descent import (
+    descend,
+    with_value,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,

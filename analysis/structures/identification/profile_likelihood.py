@@ -4,9 +4,9 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.identification.descent import descend
 from jointbench.analysis.structures.identification.joint_result import LikelihoodProfile
 from jointbench.analysis.structures.identification.parameter_intervals import LEVEL
+from jointbench.analysis.structures.identification.stiffness_descent import descend
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
     StiffnessProblem,

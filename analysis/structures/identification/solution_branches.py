@@ -11,7 +11,10 @@ from itertools import combinations
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray
-from jointbench.analysis.structures.identification.descent import descend, with_value
+from jointbench.analysis.structures.identification.stiffness_descent import (
+    descend,
+    with_value,
+)
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
     StiffnessProblem,

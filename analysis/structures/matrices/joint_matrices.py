@@ -132,9 +132,9 @@ def _no_single_plane(joint: Joint, count: int) -> str:
             "name the face of the first body, for example face = 'z+'"
         )
     return (
-        f"joint {joint.name!r} touches nothing: no face of {joint.between[0]!r} and "
-        f"{joint.between[1]!r} share an area where its patches are; check positions, "
-        "units and patches"
+        f"joint {joint.name!r} touches nothing: no surfaces of {joint.between[0]!r} "
+        f"and {joint.between[1]!r} share an area where its patches are; check "
+        "positions, units and patches"
     )
 
 

@@ -120,8 +120,8 @@ def coupled_modes(
         seed: of the draws.
 
     Returns:
-        Oscillating modes within the band, with standard deviations: those of the draws,
-        and the change with a further power for the modes above the band.
+        Oscillating modes within the band, with standard deviations: those of draws
+        with two further powers for the modes above the band, and the change with these.
 
     Raises:
         BadData: there is none, or a fit fails.
@@ -145,14 +145,19 @@ def coupled_modes(
             f"the coupled bodies have no mode from {band[0]:g} to {band[1]:g} Hz; "
             "widen the band of the measurement"
         )
-    apart = _numbers(poles_near(gap([one for _, one in fits]), poles)) - _numbers(poles)
+    fuller = [one for _, one in fits]
+    other = poles_near(gap(fuller), poles.tolist())
+    places = other.tolist()
     random = np.random.default_rng(seed)
+    # A further power moves the poles by the error of the description, or by its own
+    # noise; the noise of the fuller fit is that of a description without error.
     drawn = np.array(
         [
-            _numbers(poles_near(gap([one.drawn(random) for one in best]), poles))
+            _numbers(poles_near(gap([one.drawn(random) for one in fuller]), places))
             for _ in range(draws)
         ]
     )
+    apart = _numbers(other) - _numbers(poles)
     noise = np.nanstd(drawn, axis=0, ddof=1)
     sd = np.hypot(noise, np.where(np.isfinite(apart), apart, np.inf))
     frequency, ratio = _numbers(poles)
@@ -231,6 +236,6 @@ def _starts(
         np.array([one.damping for one in links], float),
     )
     pole = whole.complex_modes(values).pole
-    size = np.abs(pole) / (2.0 * np.pi)
-    near = (size > band[0] / _AROUND) & (size < band[1] * _AROUND)
+    level = np.abs(pole) / (2.0 * np.pi)
+    near = (level > band[0] / _AROUND) & (level < band[1] * _AROUND)
     return [complex(one) for one in pole[near & (pole.imag > 0.0)]]

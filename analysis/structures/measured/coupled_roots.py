@@ -65,12 +65,14 @@ def pole_near(gap: GapMatrix, start: complex) -> complex | None:
     """
     s = complex(start)
     for _ in range(_MOST_STEPS):
+        if not np.isfinite(s):
+            break
         value, vector = np.linalg.eig(gap.at(s))
         # The matrix is symmetric: rows of the inverse are transposed vectors.
         slope = np.einsum("im,im->m", vector, gap.slope(s) @ vector)
         size = np.einsum("im,im->m", vector, vector)
-        steps = -value * size / np.where(slope == 0, np.nan, slope)
-        step = complex(steps[int(np.nanargmin(np.abs(steps)))])
+        steps = -value * size / np.where(slope == 0, 1e-300, slope)
+        step = complex(steps[int(np.argmin(np.abs(steps)))])
         if abs(step) <= _FOUND * abs(s):
             return s + step
         s += step * min(1.0, _LARGEST_STEP * abs(s) / abs(step))

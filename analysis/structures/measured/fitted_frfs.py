@@ -13,6 +13,8 @@ _ABOVE_NOISE = 3.0
 _MOST_RIGID = 6
 # Shares of the band at which poles above it answer as the series does.
 _LOW, _HIGH = 0.4, 0.9
+# Modes above this share of the band have no peak in it.
+_CLEARLY_ABOVE = 1.03
 # Eigenvalues of the flexibility below this share of the largest are noise.
 _NO_FLEXIBILITY = 1e-9
 
@@ -21,20 +23,20 @@ _NO_FLEXIBILITY = 1e-9
 class BodyResponse:
     """Receptances of a body as a function of s, valid within the band of their fit.
 
-    H(s) = rigid' rigid / s^2 + sum over modes shape' shape / (s^2 + 2 z w s + w^2) +
-    sum over p series[p] s^p; odd powers are the damping of the modes above.
+    H(s) = rigid' rigid / s^2 + sum over modes residue / (s^2 + 2 z w s + w^2) + sum
+    over p series[p] s^p; odd powers are the damping of the modes above.
 
     Attributes:
         omega: of the elastic modes [rad/s], shape (n_modes,).
         damping_ratio: [-], shape (n_modes,).
-        shapes: [kg^-1/2], shape (n_modes, n_points).
+        residues: symmetric [1/kg], shape (n_modes, n_points, n_points).
         rigid: [kg^-1/2], shape (n_rigid, n_points).
         series: symmetric, shape (n_terms, n_points, n_points).
     """
 
     omega: FloatArray
     damping_ratio: FloatArray
-    shapes: FloatArray
+    residues: FloatArray
     rigid: FloatArray
     series: FloatArray
 
@@ -47,7 +49,7 @@ class BodyResponse:
         swing = s * s + 2.0 * self.damping_ratio * self.omega * s + self.omega**2
         powers = s ** np.arange(self.series.shape[0])
         found = self.rigid.T @ self.rigid / (s * s)
-        found = found + (self.shapes.T / swing) @ self.shapes
+        found = found + np.tensordot(1.0 / swing, self.residues, 1)
         return np.asarray(found + np.tensordot(powers, self.series, 1))
 
     def slope(self, s: complex) -> ComplexArray:
@@ -57,7 +59,7 @@ class BodyResponse:
         power = np.arange(self.series.shape[0])
         slopes = power * s**power / s
         found = -2.0 * self.rigid.T @ self.rigid / s**3
-        found = found - (self.shapes.T * ((2.0 * s + decay) / swing**2)) @ self.shapes
+        found = found - np.tensordot((2.0 * s + decay) / swing**2, self.residues, 1)
         return np.asarray(found + np.tensordot(slopes, self.series, 1))
 
 
@@ -94,7 +96,7 @@ class FittedFrfs:
     @property
     def powers(self) -> int:
         """Highest power of s that describes the modes above the band."""
-        return self.terms.shape[0] - self.frequency.size - 2
+        return int(self.terms.shape[0]) - int(self.frequency.size) - 2
 
     @property
     def terms_sd(self) -> FloatArray:
@@ -102,14 +104,21 @@ class FittedFrfs:
         return np.asarray(np.moveaxis(np.linalg.norm(self.roots, axis=3), 2, 0))
 
     def response(self) -> BodyResponse:
-        """Return the FRFs with modes of rank one."""
-        last = self.frequency.size + 1
+        """Return the FRFs, with modes of the band of rank one.
+
+        Within the band, the residue of a mode above and the series compensate each
+        other's errors; at a rank of one it would not.
+        """
+        count = self.frequency.size
+        shapes = self._shapes()
+        pure = shapes[:, :, None] * shapes[:, None, :]
+        above = self.frequency > _CLEARLY_ABOVE * self.band_hz
         return BodyResponse(
             2.0 * np.pi * self.frequency,
             self.damping_ratio,
-            self._shapes(),
+            np.where(above[:, None, None], self.terms[1 : count + 1], pure),
             self._rigid(),
-            self.terms[last:],
+            self.terms[count + 1 :],
         )
 
     def table(self) -> ModalTable:
@@ -133,7 +142,10 @@ class FittedFrfs:
         )
 
     def drawn(self, random: np.random.Generator) -> "FittedFrfs":
-        """Return coefficients drawn from their uncertainty."""
+        """Return coefficients drawn from their uncertainty.
+
+        The place of a mode above the band stays: its residue and the series follow it.
+        """
         points, terms = self.roots.shape[0], self.roots.shape[2]
         noise = np.einsum(
             "ijkl,ijl->kij", self.roots, random.standard_normal((points, points, terms))
@@ -141,6 +153,7 @@ class FittedFrfs:
         upper = np.triu(noise)
         noise = upper + np.swapaxes(np.triu(noise, 1), 1, 2)
         shift = random.standard_normal((2, self.frequency.size))
+        shift[:, self.frequency > _CLEARLY_ABOVE * self.band_hz] = 0.0
         return replace(
             self,
             frequency=np.sort(self.frequency + self.frequency_sd * shift[0]),
@@ -168,10 +181,8 @@ class FittedFrfs:
         The series is known within the band, its coefficients at s = 0 are not: one mode
         for each direction agrees with it at two frequencies of the band.
         """
-        series = self.terms[self.frequency.size + 1 :: 2]
-        power = np.arange(series.shape[0])
         square = (2.0 * np.pi * self.band_hz * np.array([_LOW, _HIGH])) ** 2
-        low, high = (np.tensordot((-one) ** power, series, 1) for one in square)
+        low, high = (self._beside_modes(one) for one in square.tolist())
         value, vector = np.linalg.eigh(low)
         kept = value > _NO_FLEXIBILITY * max(float(value.max(initial=0.0)), 0.0)
         value, vector = value[kept], vector[:, kept]
@@ -183,6 +194,16 @@ class FittedFrfs:
         place = np.where(rises, (ratio - 1.0) / (ratio * square[1] - square[0]), 0.0)
         rows = np.sqrt(1.0 - square[0] * place) * ((vector * np.sqrt(value)) @ turn)
         return np.asarray(rows @ rows.T), np.asarray((rows * place) @ rows.T)
+
+    def _beside_modes(self, square: float) -> FloatArray:
+        """Return what modes of rank one leave of the FRFs at a frequency, squared."""
+        whole, shapes = self.response(), self._shapes()
+        power = np.arange((whole.series.shape[0] + 1) // 2)
+        found = np.tensordot((-square) ** power, whole.series[::2], 1)
+        rest = whole.residues - shapes[:, :, None] * shapes[:, None, :]
+        above = whole.omega > 2.0 * np.pi * _CLEARLY_ABOVE * self.band_hz
+        swing = np.where(above, whole.omega**2 - square, np.inf)
+        return np.asarray(found + np.tensordot(1.0 / swing, rest, 1))
 
 
 def _leading(residue: FloatArray) -> FloatArray:

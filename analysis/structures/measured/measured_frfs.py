@@ -12,7 +12,7 @@ from jointbench.acquisition.basics.errors import BadData, NoModeFound
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.structures.measured.fitted_frfs import FittedFrfs
 from jointbench.analysis.structures.measured.frf_coupling import FrfBlock
-from jointbench.analysis.structures.measured.mode_above import mode_above
+from jointbench.analysis.structures.measured.mode_above import ModeAbove, mode_above
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
@@ -27,6 +27,14 @@ _FURTHER = 2
 _LINES_EACH = 4
 # Damping ratio of a mode above the band of a body without modes in it.
 _DAMPING = 0.005
+# Most modes at the end of the band and above that are modes of the fit.
+_MOST_ABOVE = 2
+# Rounds in which each of them is found again beside the others.
+_ROUNDS = 3
+
+
+_Poles = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""Frequencies [Hz] and damping ratios [-] with standard deviations after each."""
 
 
 def fit_frfs(block: FrfBlock, band: tuple[float, float]) -> FittedFrfs:
@@ -61,7 +69,7 @@ def fit_twice(
     keep = (block.frequency >= band[0]) & (block.frequency <= band[1])
     poles = _with_mode_above(block, band, _poles(block, band))
     fixed = poles[0].size + 2
-    room = np.count_nonzero(keep) // _LINES_EACH - fixed
+    room = int(np.count_nonzero(keep)) // _LINES_EACH - fixed
     if room < _POWERS + _FURTHER:
         raise BadData(
             f"{np.count_nonzero(keep)} lines of {block.name!r} from {band[0]:g} to "
@@ -155,16 +163,16 @@ def _solved(
 
 
 def _needed(solved: Sequence[_Solved], least: int, most: int) -> int:
-    """Return the number of columns that the FRFs need together."""
-    limit = chi2_limit(_CHANCE, len(solved))
-    gain = sum(one.along**2 / one.noise for one in solved)
-    needed = np.flatnonzero(np.asarray(gain)[least:most] > limit)
-    return least + (int(needed[-1]) + 1 if needed.size else 0)
+    """Return the number of columns that the FRFs need together, pair by pair."""
+    limit = chi2_limit(_CHANCE, _FURTHER * len(solved))
+    gain = np.asarray(sum(one.along**2 / one.noise for one in solved))
+    used = least
+    while used + _FURTHER <= most and gain[used : used + _FURTHER].sum() > limit:
+        used += _FURTHER
+    return used
 
 
-def _poles(
-    block: FrfBlock, band: tuple[float, float]
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _poles(block: FrfBlock, band: tuple[float, float]) -> _Poles:
     """Return frequencies and damping ratios with their standard deviations."""
     # Two columns hold the poles; more would only cost time.
     size = np.abs(block.receptance).sum(axis=2)
@@ -193,24 +201,33 @@ def _poles(
 def _with_mode_above(
     block: FrfBlock,
     band: tuple[float, float],
-    poles: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Append a mode just above the band where the FRFs need one."""
+    poles: _Poles,
+) -> _Poles:
+    """Append modes at the end of the band or just above where the FRFs need them."""
     frequency, frequency_sd, ratio, ratio_sd = poles
     damping = float(np.median(ratio)) if ratio.size else _DAMPING
+    known = float(frequency.max(initial=0.0))
     columns = [_power(power) for power in (-2, *range(_POWERS + 1))]
     columns += [
         _pole(w, z)
         for w, z in zip((2.0 * np.pi * frequency).tolist(), ratio.tolist(), strict=True)
     ]
-    found = mode_above(block, band, columns, damping)
-    if found is None:
-        return poles
+    found: list[ModeAbove] = []
+
+    def next_to(others: Sequence[ModeAbove]) -> ModeAbove | None:
+        more = [_pole(2.0 * np.pi * o.frequency, o.damping_ratio) for o in others]
+        return mode_above(block, band, columns + more, damping, known)
+
+    while len(found) < _MOST_ABOVE and (one := next_to(found)) is not None:
+        found.append(one)
+        # Each was found without those after it.
+        for at in [*range(len(found))] * (_ROUNDS if len(found) > 1 else 0):
+            found[at] = next_to(found[:at] + found[at + 1 :]) or found[at]
     return (
-        np.append(frequency, found[0]),
-        np.append(frequency_sd, found[1]),
-        np.append(ratio, damping),
-        np.append(ratio_sd, damping),
+        np.append(frequency, [one.frequency for one in found]),
+        np.append(frequency_sd, [one.frequency_sd for one in found]),
+        np.append(ratio, [one.damping_ratio for one in found]),
+        np.append(ratio_sd, [one.damping_sd for one in found]),
     )
 
 

@@ -338,7 +338,8 @@ def frf_bound(
     force = np.zeros((2 * count, rows.shape[0]), complex)
     force[count:] = (rows @ modal.space).T
     weight = np.linalg.solve(vector, force)
-    lines = _over_lines(1j * omega, pole)
+    laplace = np.asarray(1j * omega, complex)
+    lines = _over_lines(laplace, pole)
     response = np.stack(
         [vector[:count] @ (one[:, None] * lines) for one in weight.T], axis=1
     )
@@ -358,7 +359,6 @@ def frf_bound(
         poles=pole,
         vectors=vector[:count],
     )
-    laplace = np.asarray(1j * omega, complex)
     better = np.einsum("or,ril->oil", rows @ modal.space, response)
     apart = np.abs(receptance(model, values, laplace, rows, rows) - better)
     return np.asarray(apart + receptance_bound(solution, load, response, omega))

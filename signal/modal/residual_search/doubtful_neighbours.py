@@ -55,8 +55,6 @@ _STATED = 0.9
 _CLEAN = 1.1
 # Log Bayes factor of a neighbour whose evidence is beyond first order.
 _CERTAIN = 700.0
-# Places named in the remark.
-_LISTED = 6
 # Share of the probability in an interval, and its half-width in sd of a normal law; an
 # interval that holds this much without neighbours is left as it is.
 _HELD, _NORMAL, _ENOUGH = 0.95, 1.959964, 0.945
@@ -298,7 +296,5 @@ def neighbour_words(doubts: DoubtfulNeighbours) -> tuple[str, ...]:
 
 
 def _listed(frequency: FloatArray) -> str:
-    """Return the first frequencies as words."""
-    listed = ", ".join(f"{f:.6g}" for f in frequency[:_LISTED])
-    rest = frequency.size - _LISTED
-    return f"{listed} Hz and {rest} more" if rest > 0 else f"{listed} Hz"
+    """Return the frequencies as words; all, as each stands for a mode to look for."""
+    return ", ".join(f"{f:.6g}" for f in frequency) + " Hz"

@@ -34,9 +34,13 @@ _GAIN, _LEAST_SHARE = 2.0, 0.003
 _UNKNOWN_AIM = 0.02
 # Modes around that are fitted along: two pairs side by side are four.
 _MOST_OTHERS = 3
+_PAIR = 2
 # Chi-squared over the number of values up to which two modes explain the lines, and up
 # to which the modes around them are taken from the same fit.
 _EXPLAINED, _WELL = 5.0, 1.5
+# Two references cannot show a third mode closer to a pair than this many half-power
+# widths: the residue of a shared pole has rank two.
+_AT_ONE_POLE = 0.1
 _NONE = np.empty(0, np.int64)
 
 
@@ -156,6 +160,27 @@ def second_modes(
         return found
     both = _doubled(sides, peak, members, single.cost, 2, gone)
     return both if both.accepted else found
+
+
+def without_third(sides: FrfSides, found: SecondModes) -> SecondModes:
+    """Return a pair fitted in place of all modes at its pole, where the lines allow it.
+
+    Args:
+        sides: the fit.
+        found: an accepted pair.
+    """
+    if min(sides.n_outputs, sides.n_inputs) != _PAIR or found.count > 1:
+        return found
+    pole, pair = sides.poles.pole, found.modes.pole[:_PAIR]
+    apart = np.min(np.abs(pole[:, None] - pair), axis=1)
+    near = apart < _AT_ONE_POLE * found.peak.width
+    near[found.members[0]] = near[found.replaced] = False
+    if not near.any():
+        return found
+    kept = found.members[~near[found.members]]
+    gone = np.append(found.replaced, np.flatnonzero(near))
+    alone = second_modes(sides, kept, gone)
+    return alone if alone.accepted else found
 
 
 def _doubled(

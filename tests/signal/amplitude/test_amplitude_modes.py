@@ -195,6 +195,20 @@ def test_a_cubic_spring_changes_frequency_alone() -> None:
     assert mode.frequency_change > 0
 
 
+def test_the_onset_of_a_stop_is_followed_at_80_db() -> None:
+    """Its bend takes knots finer than a quarter of ln a; the law is found with it."""
+    base = chain(np.random.default_rng(1), 1)
+    omega, shapes = base.modes()
+    size = float(abs(shapes[0, 0]) ** 2 / omega[0])
+    lost = 2.0 * 0.017 * omega[0] ** 2 / shapes[0, 0] ** 2
+    joint = Joint(clearance=0.3 * size, stop_stiffness=1.5 * lost)
+    _, found = resolved(struck(with_joint(base, joint, 0.0), LEVELS, 80.0))
+    mode = min(found, key=lambda m: abs(m.soft.frequency - 80.0))
+    assert mode.residual_ratio < 2.0
+    assert mode.dependence is Dependence.DEPENDS and mode.curve is not None
+    assert mode.laws[0].name == "clearance or opening"
+
+
 def test_a_linear_structure_does_not_depend() -> None:
     """Three masses without a joint, 60 dB: no mode depends, the model is untouched."""
     base = chain(np.random.default_rng(2), 3)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Weak modes at multiples of a strong one, and modes that beat, are not decided."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -63,3 +65,11 @@ def test_modes_that_beat_on_a_joint_are_not_decided(
     """5 % from 80 Hz with a change of 0.4 %, of 0.05 %; 25 % from it."""
     found = with_doubts((mode(80.0, 1.0), mode(frequency, 1.0, change)))
     assert [one.dependence for one in found] == [outcome, outcome]
+
+
+def test_a_mode_beats_with_one_that_seems_not_to_depend() -> None:
+    """The joint works both modes; which of them shows it is a matter of noise."""
+    still = replace(mode(80.0, 1.0), dependence=Dependence.NONE)
+    found = with_doubts((still, mode(84.0, 1.0, -0.004)))
+    outcomes = [one.dependence for one in found]
+    assert outcomes == [Dependence.NONE, Dependence.NOT_DECIDED]

@@ -19,8 +19,11 @@ from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.commands.record_command import run_record
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.main import app, exit_code
+from jointbench.station.pipeline.process_session import curves_at, process_session
+from jointbench.station.pipeline.stage_store import NoStore
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
+from jointbench.station.schemas.recipe import read_recipe
 from jointbench.station.sources.open_source import open_runs
 from jointbench.station.sources.recorded_session import record_session_file
 
@@ -111,6 +114,28 @@ def test_a_session_with_nothing_hidden_misses_nothing(
     assert all("mode" in words for words in found["curves"]["words"])
     assert not any(mode["predicted"] for mode in found["curves"]["modes"])
     assert "Modes over amplitude" in (tmp_path / "g.html").read_text()
+
+
+def test_process_compares_its_curves_with_the_explanations(
+    recorded: Path, tmp_path: Path
+) -> None:
+    """`process` gives the gap the modes over amplitude that it has found."""
+    (tmp_path / "bench.toml").write_bytes(recorded.with_suffix(".toml").read_bytes())
+    recipe = tmp_path / "amplitude.toml"
+    few = all_but("cubic_stiffness").replace(",", '", "')
+    recipe.write_text(
+        '[hits]\npeak_fraction = "1 %"\nweak_ratio = "0 %"\n'
+        "[kalman]\nuse = false\n"
+        f'[gap]\nmodel = "bench.toml"\nwithout = ["{few}"]\n'
+    )
+    stages = NoStore()
+    done = process_session(read_session(recorded), "", read_recipe(recipe), stages)
+    assert done.gap is not None, done.remarks
+    assert done.gap["verdict"] == "none" and "gap" in stages.computed
+    assert done.gap["curves"]["hits"] >= 4
+    assert all("mode" in words for words in done.gap["curves"]["words"])
+    nowhere = curves_at(done.modal, 1.0)
+    assert not nowhere.modes and "no modes at 1 N" in nowhere.reason
 
 
 def test_a_glancing_hit_among_levels_is_left_out_and_reported(

@@ -97,7 +97,7 @@ def test_without_options_nothing_is_added(surface):
     found, shown = surface("p1.csv")
     assert set(found) == {"files"}
     assert not {"direction", "directions", "weierstrass"} & set(found["files"][0])
-    assert shown.count("p1: ") == 2
+    assert shown.count("p1: ") == 4
 
 
 def test_form_and_outliers_are_removed_and_stated(surface):

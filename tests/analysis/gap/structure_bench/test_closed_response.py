@@ -1,6 +1,7 @@
 """Closed responses of bolted bodies against an integrator, slopes by differences."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_bench.base_layout import base_layout
+from jointbench.analysis.gap.structure_bench.closed_response import close
 from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.hit_frames import hit_frame
 from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model
@@ -21,7 +23,11 @@ from jointbench.analysis.gap.structure_bench.landing import (
     landing_weights,
     point_columns,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import PortLaws, iwan_sliders
+from jointbench.analysis.gap.structure_bench.port_laws import (
+    LawForm,
+    PortLaws,
+    iwan_sliders,
+)
 
 NOMINAL = NominalBench(
     stiffness=np.array([3e6, 4e6, 8e6]),
@@ -37,6 +43,7 @@ NOMINAL = NominalBench(
     aim_sd=1e-3,
     tilt_sd=0.02,
     torque_reference=40.0,
+    bolt_places=np.zeros((0, 2)),
 )
 LANDING = np.array([[0.02, -0.01, 8e-4, -5e-4], [0.0, 0.0, 0.0, 0.0]])
 
@@ -84,26 +91,79 @@ def test_the_linear_response_is_that_of_an_integrator() -> None:
     assert distance(found, judged(made, state)) < 1e-4
 
 
-def test_micro_slip_at_four_bolts_is_that_of_an_integrator() -> None:
-    """Sliders at eight ports agree with solve_ivp to 1e-4 of the peak."""
+FOUR_LAWS = (
+    PortLaws((2,), 4e15, kind=LawForm.CUBIC),
+    PortLaws((5,), 1e11, kind=LawForm.QUADRATIC),
+    PortLaws((8,), 2e7, kind=LawForm.STOP, gap=2e-6),
+    PortLaws((11,), 2e4, kind=LawForm.SQUARE_DAMPING),
+)
+
+
+@pytest.mark.parametrize("others", [(), FOUR_LAWS])
+def test_laws_at_four_bolts_are_those_of_an_integrator(
+    others: tuple[PortLaws, ...],
+) -> None:
+    """Sliders at eight ports, alone and beside four normal laws, agree to 1e-4."""
     made = campaign()
     slips, weights = iwan_sliders(1e-6, 1.6)
     ports = tuple(3 * k + d for k in range(4) for d in (0, 1))
     linear = state_at(made)
-    state = replace(linear, laws=PortLaws(ports, 0.5, slips, weights))
+    slides = PortLaws(ports, 0.5, slips, weights)
     weights_of_hits = landing_weights(LANDING)
-    found = model_of(made, state).response(weights_of_hits)[0]
-    stuck = model_of(made, linear).response(weights_of_hits)[0]
+    found, stuck, without = (
+        model_of(made, replace(linear, laws=laws)).response(weights_of_hits)[0]
+        for laws in ((slides, *others), (), (slides,))
+    )
     assert distance(found, stuck) > 0.02
-    assert distance(found, judged(made, state)) < 1e-4
+    assert not others or distance(found, without) > 0.02
+    assert distance(found, judged(made, replace(linear, laws=(slides, *others)))) < 1e-4
 
 
-def test_an_added_mass_is_that_of_an_integrator() -> None:
-    """A mass at the hit point, in three directions, agrees with solve_ivp to 1e-4."""
+CHANGES: dict[str, dict[str, Any]] = {
+    "mass": {"attached": (Attached(0, 0.4),)},
+    "spring": {"attached": (Attached(0, 0.0, stiffness=2e6, normal=True),)},
+    "foot and sensor": {
+        "foot_factor": np.array([1.0, 60.0, 1.0, 1.0]),
+        "sensors": np.roll(random_bodies().sensors, 1, axis=1),
+    },
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_linear_changes_are_those_of_an_integrator(change: str) -> None:
+    """A mass, a spring, a stiff foot and a turned sensor agree with solve_ivp."""
     made = campaign()
-    state = replace(state_at(made), attached=(Attached(0, 0.4),))
-    found = model_of(made, state).response(landing_weights(LANDING))[0]
+    plain = state_at(made)
+    state = replace(plain, **CHANGES[change])
+    found, before = (
+        model_of(made, one).response(landing_weights(LANDING))[0]
+        for one in (state, plain)
+    )
+    assert distance(found, before) > 0.02
     assert distance(found, judged(made, state)) < 1e-4
+
+
+def test_a_rocking_joint_is_one_of_softer_coupled_bolts() -> None:
+    """The closure with a rocking compliance has the stiffness of its inverse."""
+    made = campaign()
+    plain = replace(state_at(made), bolt=np.ones(4))
+    arm = np.array([-0.1, 0.1, 0.1, -0.1])
+    rocking = 2e-6 * np.outer(arm, arm)
+    state = replace(plain, rocking=rocking)
+    s = np.array([200.0 + 2j * np.pi * 400.0])
+    column = point_columns(made.bodies.points[0])[:1]
+    found = close(made.bodies, state, s, column).response[0, :, 0]
+    rows = made.bodies.bolts[:, 2]
+    soft = np.linalg.inv(np.diag(np.full(4, plain.compliance[2])) + rocking)
+    change = soft - np.eye(4) / plain.compliance[2]
+    lossy = 1.0 + plain.compliance[2] * plain.damping[2] * s[0]
+    ports = close(made.bodies, plain, s, np.concatenate([column, rows]))
+    at_bolts = replace(plain, sensors=rows)
+    inner = close(made.bodies, at_bolts, s, np.concatenate([column, rows]))
+    h_bb, h_bc = inner.response[0, :, 1:], inner.response[0, :, 0]
+    added = np.linalg.solve(np.eye(4) + lossy * change @ h_bb, lossy * change @ h_bc)
+    expected = ports.response[0, :, 0] - ports.response[0, :, 1:] @ added
+    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("attached", [(), (Attached(0, 0.4, 500.0, 0.02),)])
@@ -113,7 +173,9 @@ def test_slopes_are_those_of_differences(
 ) -> None:
     """Every base coordinate has the slope of a central difference."""
     made = campaign(rigid)
-    layout = base_layout(made.bodies, made.nominal)
+    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
+    layout = base_layout(made.bodies, made.nominal, band=700.0)
+    assert len(layout.tuned) == 2
     base = 0.3 * layout.sd
     weights = landing_weights(LANDING)
 

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Records of the band-limited fit of a surface."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from jointbench.signal.band_limited.matern_spectrum import BandLimited
+
+
+class RollOffVerdict(StrEnum):
+    """Verdict on the longest waves of a self-affine surface."""
+
+    SATURATED = "saturated"
+    UNDECIDED = "fractal, or saturated: too short to decide"
+    FRACTAL = "fractal over the whole length"
+    NO_BAND = "no self-affine band"
+
+
+@dataclass(frozen=True, slots=True)
+class Interval95:
+    """One number of a surface with its 95 % interval.
+
+    Attributes:
+        value: best estimate.
+        low: 2.5 % point.
+        high: 97.5 % point.
+    """
+
+    value: float
+    low: float
+    high: float
+
+    def times(self, factor: float) -> "Interval95":
+        """Return the estimate in another unit."""
+        return Interval95(factor * self.value, factor * self.low, factor * self.high)
+
+    def covers(self, truth: float) -> bool:
+        """Return whether the interval covers a value."""
+        return self.low <= truth <= self.high
+
+
+@dataclass(frozen=True, slots=True)
+class RoughnessMoments:
+    """Root mean squares along a line, of waves between two wavelengths.
+
+    Attributes:
+        shortest: wavelength [m].
+        longest: wavelength [m].
+        height: [m].
+        slope: [-].
+        curvature: [1/m].
+        modelled: from the fitted spectrum; False where they are sums of the measured
+            one.
+    """
+
+    shortest: float
+    longest: float
+    height: Interval95
+    slope: Interval95
+    curvature: Interval95
+    modelled: bool
+
+
+@dataclass(frozen=True, slots=True)
+class BandLimitedFit:
+    """The band-limited self-affine surface that describes a line of heights.
+
+    Attributes:
+        verdict: on the longest waves.
+        reason: one line with the numbers.
+        hurst: H [-]; None without a self-affine band.
+        roll_off: wavelength above which the spectrum is level [m]; None where the
+            trace does not show it.
+        roll_off_beyond: wavelength up to which no roll-off is compatible with the
+            heights, at 95 % [m]; None without a self-affine band.
+        height: root mean square of all waves [m]; None where the trace does not show
+            the longest.
+        short_cut: wavelength at which the spectrum is cut by half in amplitude beyond
+            what is known of the instrument [m]; its low end is 0 where none is found.
+        tip_deviation: distance of the fitted blur from that of a stated stylus
+            [standard deviations]; None where no radius is stated.
+        noise: standard deviation of each height [m].
+        moments: within the stated wavelengths; None where no wave is resolved.
+        tolerance: by which ln density differs from the model beyond its scatter [-].
+        model: in units of `scale` and `pitch`; None without a self-affine band.
+        pitch: [m].
+        scale: [m].
+    """
+
+    verdict: RollOffVerdict
+    reason: str
+    hurst: Interval95 | None
+    roll_off: Interval95 | None
+    roll_off_beyond: float | None
+    height: Interval95 | None
+    short_cut: Interval95 | None
+    tip_deviation: float | None
+    noise: float
+    moments: RoughnessMoments | None
+    tolerance: float
+    model: BandLimited | None
+    pitch: float
+    scale: float

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""The band-limited surface in words and as plain data."""
+
+from jointbench.signal.band_limited.band_records import (
+    BandLimitedFit,
+    Interval95,
+    RollOffVerdict,
+    RoughnessMoments,
+)
+from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
+from jointbench.station.screen.value_text import engineering
+
+COLUMNS = ("surface", "H [-]", "roll-off", "rms height", "rms slope", "rms curvature")
+_FAR = 3.0
+"""Distance of a short cut from that of the stated stylus that is reported [sd]."""
+TITLE = "Band-limited surfaces (95 % intervals)"
+
+
+def band_row(name: str, fit: BandLimitedFit | None) -> tuple[str, ...]:
+    """Return the row of a surface in the table of band-limited surfaces."""
+    if fit is None:
+        return (name, *["-"] * 5)
+    moments = fit.moments
+    numbers = ["-"] * 3
+    if moments is not None:
+        numbers = [
+            _metres(moments.height),
+            _plain(moments.slope),
+            f"{_plain(moments.curvature.times(1e-6))} /µm",
+        ]
+    hurst = "-" if fit.hurst is None else _plain(fit.hurst)
+    return (name, hurst, _roll_off_words(fit), *numbers)
+
+
+def band_lines(fit: BandLimitedFit | None, reason: str | None) -> tuple[str, ...]:
+    """Return what holds of the longest waves, and between which wavelengths."""
+    if fit is None:
+        return (f"no band-limited fit: {reason}",)
+    said = [f"longest waves: {fit.verdict.value}; {fit.reason}"]
+    if fit.moments is None:
+        said.append("no wavelength shows the surface: filters and noise hide it")
+    else:
+        ends = (fit.moments.shortest, fit.moments.longest)
+        low, high = (engineering(end, "m") for end in ends)
+        said.append(f"height, slope and curvature of waves of {low} to {high}")
+    if fit.tip_deviation is not None:
+        said.append(_tip_words(fit.tip_deviation))
+    elif fit.short_cut is not None and fit.short_cut.low > 0:
+        said.append(
+            f"waves are cut by half at {_metres(fit.short_cut)}, beyond what is stated "
+            "of the instrument: by the surface or by a blur that is not stated"
+        )
+    return tuple(said)
+
+
+def _tip_words(deviation: float) -> str:
+    if abs(deviation) <= _FAR:
+        return "the short cut is that of the stated stylus"
+    word = "wider" if deviation > 0 else "narrower"
+    return (
+        f"the short cut is {word} than that of the stated stylus, by "
+        f"{abs(deviation):.1f} standard deviations: is the radius right, is it worn?"
+    )
+
+
+def band_json(fit: BandLimitedFit | None, reason: str | None) -> dict[str, object]:
+    """Return the fit as plain data; ``verdict`` and ``reason`` are always there."""
+    if fit is None:
+        return {"verdict": None, "reason": reason}
+    return {
+        "verdict": fit.verdict.value,
+        "reason": fit.reason,
+        "hurst": _ends(fit.hurst),
+        "roll_off_m": _ends(fit.roll_off),
+        "roll_off_beyond_m": fit.roll_off_beyond,
+        "height_rms_m": _ends(fit.height),
+        "short_cut_m": _ends(fit.short_cut),
+        "tip_deviation": fit.tip_deviation,
+        "noise_m": fit.noise,
+        "tolerance": fit.tolerance,
+        "moments": None if fit.moments is None else _moments(fit.moments),
+    }
+
+
+def qualified(fit: FractalFit, band: BandLimitedFit | None) -> tuple[str, str]:
+    """Return verdict and reason of a fractal fit in the light of the longest waves.
+
+    A surface that rolls off is fractal within a band, and where the trace is too short
+    to decide, "fractal" has that qualification.
+    """
+    verdict, reason = fit.verdict, fit.reason
+    if band is None or verdict is not SurfaceVerdict.FRACTAL:
+        return verdict.value, reason
+    if band.verdict is RollOffVerdict.SATURATED and band.roll_off is not None:
+        low, high = (
+            engineering(end, "m") for end in (band.roll_off.low, band.roll_off.high)
+        )
+        said = f"the spectrum is level beyond a wavelength of {low} to {high}"
+        return SurfaceVerdict.BAND.value, f"{reason}; {said}"
+    if band.verdict is RollOffVerdict.UNDECIDED and band.roll_off_beyond is not None:
+        beyond = engineering(band.roll_off_beyond, "m")
+        said = f"fractal, or saturated beyond {beyond}: too short to decide"
+        return verdict.value, f"{reason}; {said}"
+    return verdict.value, reason
+
+
+def _roll_off_words(fit: BandLimitedFit) -> str:
+    if fit.roll_off is not None:
+        return _metres(fit.roll_off)
+    if fit.roll_off_beyond is not None:
+        return f"beyond {engineering(fit.roll_off_beyond, 'm')}"
+    return "-"
+
+
+def _metres(part: Interval95) -> str:
+    value, low, high = (
+        engineering(one, "m") for one in (part.value, part.low, part.high)
+    )
+    return f"{value} ({low} to {high})"
+
+
+def _plain(part: Interval95) -> str:
+    return f"{part.value:.3g} ({part.low:.3g} to {part.high:.3g})"
+
+
+def _ends(part: Interval95 | None) -> dict[str, float] | None:
+    if part is None:
+        return None
+    return {"value": part.value, "low": part.low, "high": part.high}
+
+
+def _moments(moments: RoughnessMoments) -> dict[str, object]:
+    return {
+        "shortest_m": moments.shortest,
+        "longest_m": moments.longest,
+        "height_rms_m": _ends(moments.height),
+        "slope_rms": _ends(moments.slope),
+        "curvature_rms_per_m": _ends(moments.curvature),
+        "modelled": moments.modelled,
+    }

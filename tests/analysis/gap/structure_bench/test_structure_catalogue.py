@@ -1,0 +1,83 @@
+"""Effects on bolted bodies: each vanishes where it is off, and acts at its sites."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hit_campaigns import Hidden, write_campaign
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
+from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.search.screening import start_grid
+from jointbench.analysis.gap.structure_bench.make_structure_bench import (
+    make_structure_bench,
+)
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_bench.structure_catalogue import (
+    STRUCTURE_CATALOGUE,
+)
+from jointbench.station.schemas.nominal_bench_file import read_nominal
+
+PLACES = np.array([[0.1, 0.1], [0.3, 0.1], [0.3, 0.2], [0.1, 0.2]])
+NAMES = tuple(entry.effect.name for entry in STRUCTURE_CATALOGUE)
+RIGID = {"joint_compliance_normal", "joint_compliance_tangential"}
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> StructureBench:
+    """Return a bench whose table lists all directions at the sensors."""
+    path, nominal = write_campaign(tmp_path_factory.mktemp("complete"), Hidden())
+    campaign = read_hit_campaign(path, *read_nominal(nominal))
+    bodies = campaign.bodies
+    across = np.stack([np.roll(bodies.sensors, k, axis=1) for k in (1, 2)], axis=1)
+    campaign = replace(
+        campaign,
+        bodies=replace(bodies, across=across),
+        nominal=replace(campaign.nominal, bolt_places=PLACES),
+    )
+    return make_structure_bench(campaign)
+
+
+def test_sites_are_those_of_the_structure(bench: StructureBench) -> None:
+    """Four bolts and feet, two bodies and axes, three channels, eight more points."""
+    count = Counter(c.effect.name for c in bench.candidates)
+    assert not RIGID & set(count)
+    assert [count[name] for name in ("loose_bolt", "cubic", "support")] == [4, 4, 4]
+    assert [count[name] for name in ("contact_patch", "modulus")] == [2, 2]
+    assert [count[name] for name in ("polarity", "cross_axis")] == [3, 3]
+    assert [count[name] for name in ("macroslip", "microslip")] == [5, 1]
+    assert count["preload_damping"] == 1
+    points = {c.site.name for c in bench.candidates if c.effect.name == "hidden_mode"}
+    assert {"P1", "P1 normal", "top bolt 3", "foot 0"} <= points
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if n not in RIGID])
+def test_an_effect_vanishes_where_it_is_off(bench: StructureBench, name: str) -> None:
+    """Off it changes nothing, and a little of it changes the response."""
+    candidate = next(c for c in bench.candidates if c.effect.name == name)
+    first = candidate.effect.parameters[0]
+    base, window = np.zeros(bench.base_sd.size), 0.003
+    plain = bench.response(base, (), window)
+    peak = np.abs(plain).max()
+    shape = start_grid(candidate)[-1]
+
+    def change(amplitude: float) -> float:
+        u = np.array([first.encode(amplitude), *shape[1:]])
+        moved = bench.response(base, (Term(candidate, u),), window)
+        return float(np.abs(moved - plain).max() / peak)
+
+    assert change(0.0) < 1e-12
+    assert 1e-6 < change(first.far[0] if first.far else 0.3) < 30.0
+    assert _finite(bench, candidate, shape)
+
+
+def _finite(bench: StructureBench, candidate: Candidate, shape: FloatArray) -> bool:
+    values = np.array(
+        [
+            p.decode(float(u)) * bench.scale(p.scale)
+            for p, u in zip(candidate.effect.parameters, shape, strict=True)
+        ]
+    )
+    return all(np.isfinite(one.value) for one in candidate.effect.reported(values))
