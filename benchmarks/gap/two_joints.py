@@ -33,7 +33,7 @@ from outcomes import wilson
 from two_joints_maker import make_two_joints
 
 BAR = 1e-4
-WORDS = ("right", "ambiguous with both", "one of two", "unknown", "wrong")
+WORDS = ("right", "ambiguous with both", "one of two", "unknown", "wrong", "crash")
 
 
 Run = dict[str, Any]
@@ -87,7 +87,11 @@ def judge(key: str) -> Run:
 
     made = make_two_joints(int(key))
     start = time.process_time()
-    found = diagnosis_json(diagnose(made.campaign))
+    try:
+        found = diagnosis_json(diagnose(made.campaign))
+    except Exception as error:  # noqa: BLE001 - a crash is an outcome to be counted
+        reason = f"{type(error).__name__}: {error}"
+        found = {"verdict": "crash", "effects": [], "reason": reason}
     run = {
         "truth": made.truth,
         "parameters": [dict(e.parameters) for e in made.effects],
@@ -104,6 +108,8 @@ def word_of(run: Run) -> str:
     labels = {f"{e['name']}@{e['site']}" for e in found["effects"]}
     if found["verdict"] == "ambiguous":
         return "ambiguous with both" if truth <= labels else "wrong"
+    if found["verdict"] == "crash":
+        return "crash"
     if found["verdict"] != "named":
         return "unknown"
     if labels == truth:

@@ -109,7 +109,8 @@ def _drawn(
             moved[at] += loops.stiffness[k]
             moved[at + len(bench.campaign.model.links)] += loops.damping[k]
             poles = _modes(bench, moved, actions, action.index)
-            found = poles[m] if m < poles.size else complex(np.nan, np.nan)
+            # Python's abs of a complex NaN may raise for an error of an earlier call.
+            found = poles[m] if m < poles.size else np.complex128(np.nan)
             frequency[m, k] = abs(found) / (2.0 * np.pi)
             damping[m, k] = -found.real / abs(found)
     loops = harmonic_loops(law, amplitude, float(abs(linear[0])))
