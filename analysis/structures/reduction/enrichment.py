@@ -16,7 +16,7 @@ from jointbench.analysis.structures.reduction.relative_motion import pattern_blo
 
 # Traction patterns of each joint and direction that are added at once.
 _PATTERNS = 8
-# Motions of each body, times the number of the enrichment (decision record 0198).
+# Motions of each body, times a factor of the enrichment (decision record 0198).
 _MOTIONS = 16
 # Singular values below this share of the largest are left out.
 _SMALL = 1e-4
@@ -38,15 +38,15 @@ class Enrichment:
 
 
 def enrichment(
-    whole: Assembled, points: Sequence[FloatArray], number: int = 1
+    whole: Assembled, points: Sequence[FloatArray], factor: int = 1
 ) -> Enrichment:
     """Return the tractions and motions of the modes at some points of the box.
 
     Args:
         whole: the assembly.
         points: stiffnesses [N/m], each of shape (n_parameters,).
-        number: of the enrichment, from 1: motions replace those of the one before, so
-            a later one takes more of them.
+        factor: of the motions that are taken: they replace those of the enrichment
+            before, so that a later one needs more.
 
     Returns:
         For the next reduction of the bodies.
@@ -68,7 +68,7 @@ def enrichment(
     inertia = {}
     for body, place in zip(whole.components, whole.places, strict=True):
         vector, size, _ = np.linalg.svd(motion[place], full_matrices=False)
-        most = number * _MOTIONS
+        most = factor * _MOTIONS
         kept = vector[:, :most][:, size[:most] > _SMALL * size[0]]
         inertia[body.name] = body.basis @ kept
     return Enrichment(patterns, inertia)

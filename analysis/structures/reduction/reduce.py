@@ -192,7 +192,7 @@ def reduce_structure(
         if not found.weak:
             return found.model
         worst.append(found.worst)
-        more = enrichment(whole, found.weak[:_AT_ONCE], len(worst))
+        more = enrichment(whole, found.weak[:_AT_ONCE], max(1, len(worst) - 1))
         ports = widened(ports, joints, more.patterns)
         inertia = more.inertia
     raise BadData(

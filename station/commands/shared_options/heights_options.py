@@ -25,9 +25,9 @@ Filter = Annotated[
     str | None,
     typer.Option(
         "--filter",
-        metavar="SHORT:LONG",
-        help="Gaussian filter before the fit: cut-offs lambda_s and lambda_c with "
-        "units, for example '2.5 um:0.8 mm', '2.5 um:' or ':0.8 mm'.",
+        metavar="LOW:HIGH",
+        help="Gaussian filter before the fit: cut-offs lambda_s and lambda_c [m or "
+        "with a unit], for example '2.5 um:0.8 mm', '2.5 um:' or ':0.8 mm'.",
     ),
 ]
 Direction = Annotated[
