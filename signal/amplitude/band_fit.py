@@ -243,10 +243,3 @@ def criterion(fit: JointFit) -> float:
     size = 2.0 * fit.residual.size
     used = float(np.sum(fit.covariance * fit.normal))
     return size * float(np.log(fit.chi2)) + 2.0 * used
-
-
-def linear_poles(fit: JointFit, centre: float) -> ComplexArray:
-    """Return the poles of a linear fit [rad/s], shape (n_modes,)."""
-    omega = np.array([centre * np.exp(m.log_omega[0]) for m in fit.modes])
-    zeta = np.array([np.exp(m.log_zeta[0]) for m in fit.modes])
-    return np.asarray(omega * (-zeta + 1j))

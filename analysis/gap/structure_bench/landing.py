@@ -13,7 +13,6 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import HitPoint
 
 COLUMNS = 9
 """Columns of a hit point."""
-PLACE_NAMES = ("tilt 1 [rad]", "tilt 2 [rad]", "aim 1 [m]", "aim 2 [m]")
 DIRECTIONS_OF_A_HIT = 5
 """Two tilts, two offsets and the gain."""
 
