@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field
 
 from jointbench.acquisition.ni.stream_records import Waiting
-from jointbench.acquisition.recorder.messages import Item
+from jointbench.acquisition.recorder.replies import Item
 from jointbench.acquisition.session_file.live_read import LiveSpan
 
 

@@ -17,15 +17,24 @@ from typing import Any
 from jointbench.acquisition.basics.errors import InstrumentError, JointbenchError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.stream import Block, NiStream, StreamGap, Waiting
-from jointbench.acquisition.recorder import messages
-from jointbench.acquisition.recorder.messages import Reply, Request, Setup
+from jointbench.acquisition.recorder import replies
 from jointbench.acquisition.recorder.news import NewsBox
+from jointbench.acquisition.recorder.replies import Reply
+from jointbench.acquisition.recorder.requests import (
+    Ask,
+    CreateFile,
+    Log,
+    Request,
+    Setup,
+    Stop,
+    TriggerBy,
+)
 from jointbench.acquisition.session_file.finish import finish_live
 from jointbench.acquisition.session_file.live_read import LiveSpan
 from jointbench.acquisition.session_file.live_write import LiveSession
 
-_AT_ONCE = (messages.Log, messages.Next, messages.OpenLoops)
-"""Requests that are served while the stream waits for a lost device."""
+_AT_ONCE = (Ask.NEXT, Ask.OPEN_LOOPS)
+"""Served, as log entries are, while the stream waits for a lost device."""
 
 
 class _Ended(Exception):
@@ -59,7 +68,7 @@ class Recorder:
         self._asked = self._terminated = False
         self._failure: Exception | None = None
         self._later: deque[Request] = deque()
-        self._stop: messages.Stop | None = None
+        self._stop: Stop | None = None
         self._paused = False
 
     def run(self) -> None:
@@ -73,10 +82,10 @@ class Recorder:
             self._stream.start()
         except JointbenchError as error:
             chassis.close()
-            self._send(messages.Failed(error))
+            self._send(replies.Failed(error))
             return
         try:
-            self._send(messages.Ready(self._stream.sample_rate, self._in_step))
+            self._send(replies.Ready(self._stream.sample_rate, self._in_step))
             with suppress(_Ended):
                 self._record()
             self._end()
@@ -121,7 +130,7 @@ class Recorder:
             request: Request = self._link.recv()
         except (EOFError, OSError):
             raise _Ended from None
-        if isinstance(request, messages.Stop):
+        if isinstance(request, Stop):
             self._stop = request
             raise _Ended
         return request
@@ -137,47 +146,47 @@ class Recorder:
         until = time.monotonic() + seconds
         while self._link.poll(max(0.0, until - time.monotonic())):
             request = self._receive()
-            if isinstance(request, _AT_ONCE):
+            if isinstance(request, Log) or request in _AT_ONCE:
                 self._serve(request)
             else:
                 self._later.append(request)
 
     def _serve(self, request: Request) -> None:
         """Carry out a request and reply."""
-        if isinstance(request, messages.Next):
+        if request is Ask.NEXT:
             self._asked = True
             self._report()
-        elif isinstance(request, messages.Log):
+        elif isinstance(request, Log):
             with suppress(InstrumentError):  # reported at the next block
                 self._log(request.entry)
         else:
             try:
-                self._send(messages.Done(self._carry_out(request)))
+                self._send(replies.Done(self._carry_out(request)))
             except JointbenchError as error:
-                self._send(messages.Failed(error))
+                self._send(replies.Failed(error))
 
     def _carry_out(self, request: Request) -> object:
         stream = self._stream
-        if isinstance(request, messages.Begin):
-            self._begin(request)
+        if isinstance(request, CreateFile):
+            self._create(request)
             return None
-        if isinstance(request, messages.OpenLoops):
+        if request is Ask.OPEN_LOOPS:
             return stream.open_loops()
-        if isinstance(request, messages.Resume):
+        if request is Ask.RESUME:
             stream.resume()
             self._paused = False
             return None
-        if isinstance(request, messages.TriggerBy):
+        if isinstance(request, TriggerBy):
             stream.trigger_by(request.trigger)
         else:
             self._paused = True
             stream.pause()
         return 0 if self._live is None else self._live.samples
 
-    def _begin(self, begin: messages.Begin) -> None:
+    def _create(self, new: CreateFile) -> None:
         self._live = LiveSession(
-            begin.path,
-            begin.meta,
+            new.path,
+            new.meta,
             channels=sum(len(sensor.axes) for sensor in self._setup.sensors),
             block=self._setup.settings.block,
         )
@@ -202,11 +211,11 @@ class Recorder:
         if self._news or self._terminated:
             self._asked = False
             counters = replace(self._stream.counters)
-            news = messages.News(self._news.take(), counters, self._terminated)
+            news = replies.News(self._news.take(), counters, self._terminated)
             self._send(news)
         elif self._failure is not None:
             self._asked = False
-            self._send(messages.Failed(self._failure))
+            self._send(replies.Failed(self._failure))
 
     def _log(self, entry: Mapping[str, object]) -> None:
         if self._live is not None:
@@ -222,7 +231,7 @@ class Recorder:
         except JointbenchError as error:
             failure = error
         if self._stop is not None:
-            self._send(messages.Stopped(self._stream.counters, failure))
+            self._send(replies.Closed(self._stream.counters, failure))
         elif self._live is not None:
             with suppress(JointbenchError):
                 finish_live(self._live.path, self._live.path, overwrite=True)

@@ -23,9 +23,25 @@ from jointbench.acquisition.ni.stream_records import (
     StreamGap,
     Waiting,
 )
-from jointbench.acquisition.recorder import messages
-from jointbench.acquisition.recorder.messages import Item, Reply, Request, Setup
 from jointbench.acquisition.recorder.recorder import run_recorder
+from jointbench.acquisition.recorder.replies import (
+    Closed,
+    Done,
+    Failed,
+    Item,
+    News,
+    Ready,
+    Reply,
+)
+from jointbench.acquisition.recorder.requests import (
+    Ask,
+    CreateFile,
+    Log,
+    Request,
+    Setup,
+    Stop,
+    TriggerBy,
+)
 from jointbench.acquisition.recorder.stored_blocks import StoredBlocks
 from jointbench.acquisition.session_file.live_read import LiveSpan
 
@@ -72,7 +88,7 @@ class RecorderProcess:
         except BaseException:
             self._leave()
             raise
-        assert isinstance(ready, messages.Ready)
+        assert isinstance(ready, Ready)
         self.sample_rate = ready.sample_rate
 
     def __enter__(self) -> "RecorderProcess":
@@ -105,7 +121,7 @@ class RecorderProcess:
             UsageError: the file is there, or cannot be written.
             InstrumentError: it cannot be read back.
         """
-        self._ask(messages.Begin(path, meta))
+        self._ask(CreateFile(path, meta))
         self._blocks = StoredBlocks(path, self.setup.settings.block)
 
     def items(self) -> Iterator[Block | StreamGap | Waiting]:
@@ -115,11 +131,11 @@ class RecorderProcess:
             InstrumentError: the device or the disk refuses, or the process died.
         """
         while not self.interrupted:
-            self._send(messages.Next())
+            self._send(Ask.NEXT)
             while not self._link.poll(_IDLE):
                 yield Waiting(0)
             news = self._reply()
-            assert isinstance(news, messages.News)
+            assert isinstance(news, News)
             self.counters, self.interrupted = news.counters, news.interrupted
             for item in news.items:
                 yield from self._passed(item)
@@ -134,11 +150,11 @@ class RecorderProcess:
             InstrumentError: the process died.
         """
         dated = {**entry, "stored": self.samples, "time": round(time.time(), 3)}
-        self._send(messages.Log(dated))
+        self._send(Log(dated))
 
     def pause(self) -> None:
         """Stop the stream on purpose; samples that were not passed on are skipped."""
-        self._skip(self._ask(messages.Pause()))
+        self._skip(self._ask(Ask.PAUSE))
 
     def resume(self) -> None:
         """Start the stream as soon as the device is available.
@@ -146,7 +162,7 @@ class RecorderProcess:
         Raises:
             InstrumentError: the device refuses, or does not return in time.
         """
-        self._ask(messages.Resume())
+        self._ask(Ask.RESUME)
 
     def trigger_by(self, trigger: HardwareTrigger) -> None:
         """Detect hits on the device from now on.
@@ -154,11 +170,11 @@ class RecorderProcess:
         Raises:
             InstrumentError: it cannot, or does not return.
         """
-        self._skip(self._ask(messages.TriggerBy(trigger)))
+        self._skip(self._ask(TriggerBy(trigger)))
 
     def open_loops(self) -> tuple[str, ...]:
         """Return the channels with a disconnected cable or sensor, if reported."""
-        found = self._ask(messages.OpenLoops())
+        found = self._ask(Ask.OPEN_LOOPS)
         assert isinstance(found, tuple)
         return found
 
@@ -174,7 +190,7 @@ class RecorderProcess:
         if self._link.closed:
             return
         try:
-            self._send(messages.Stop(interrupted))
+            self._send(Stop(interrupted))
             last = self._last_word()
         finally:
             self._leave()
@@ -201,7 +217,7 @@ class RecorderProcess:
     def _ask(self, request: Request) -> object:
         self._send(request)
         reply = self._reply()
-        assert isinstance(reply, messages.Done)
+        assert isinstance(reply, Done)
         return reply.value
 
     def _send(self, request: Request) -> None:
@@ -225,11 +241,11 @@ class RecorderProcess:
             reply: Reply = self._link.recv()
         except (EOFError, OSError) as error:
             raise self._died() from error
-        if isinstance(reply, messages.Failed):
+        if isinstance(reply, Failed):
             raise reply.error
         return reply
 
-    def _last_word(self) -> messages.Stopped:
+    def _last_word(self) -> Closed:
         """Return the reply to `Stop`; replies that were due before are void.
 
         Raises:
@@ -241,7 +257,7 @@ class RecorderProcess:
                 reply = self._link.recv()
             except (EOFError, OSError) as error:
                 raise self._died() from error
-            if isinstance(reply, messages.Stopped):
+            if isinstance(reply, Closed):
                 return reply
         raise InstrumentError(
             f"the recording process has not closed its file within {_LAST_WORD:g} s; "
@@ -278,7 +294,11 @@ def _without_main() -> Iterator[None]:
     script that measures without a guard would measure twice.
     """
     main = sys.modules["__main__"]
-    hidden = {n: vars(main).pop(n) for n in ("__file__", "__spec__") if n in vars(main)}
+    hidden: dict[str, object] = {
+        name: vars(main).pop(name)
+        for name in ("__file__", "__spec__")
+        if name in vars(main)
+    }
     vars(main)["__spec__"] = None
     try:
         yield

@@ -19,8 +19,8 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
 from jointbench.acquisition.ni.stream import Counters, StreamSettings
-from jointbench.acquisition.recorder.messages import Setup
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
+from jointbench.acquisition.recorder.requests import Setup
 from jointbench.acquisition.records.recordings import Channel, Hit, Verdict
 from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live

@@ -17,9 +17,9 @@ from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.ni.sensors import Axis, Sensor, table_channels
 from jointbench.acquisition.ni.stream import Block, StreamGap
 from jointbench.acquisition.ni.stream_records import StreamSettings, Waiting
-from jointbench.acquisition.recorder.messages import Setup
 from jointbench.acquisition.recorder.news import NewsBox
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
+from jointbench.acquisition.recorder.requests import Setup
 from jointbench.acquisition.records.recordings import Quantity
 from jointbench.acquisition.session_file.live_read import LiveSpan, read_live
 from jointbench.acquisition.session_file.live_write import channel_rows
@@ -92,7 +92,7 @@ def test_a_program_that_follows_late_gets_every_sample_that_was_stored(
 
 
 def test_a_device_without_a_clock_waits_for_the_program(tmp_path: Path) -> None:
-    """Nothing is read until it is asked for: simulated sessions do not depend on load."""
+    """Nothing is read until it is asked for, whatever the load of the computer."""
     path = tmp_path / "s.h5"
     with recording(path, speed=np.inf) as (recorder, _):
         items = (item for item in recorder.items() if isinstance(item, Block))
@@ -106,7 +106,7 @@ def test_a_device_without_a_clock_waits_for_the_program(tmp_path: Path) -> None:
 def test_overwritten_samples_are_stated_in_the_file_without_a_reader(
     tmp_path: Path,
 ) -> None:
-    """The process is stopped for longer than the buffer: every sample is accounted for."""
+    """The process is stopped for longer than the buffer: each sample is accounted."""
     path = tmp_path / "s.h5"
     with recording(path, speed=8.0, buffer=0.5) as (recorder, wait):
         wait()

@@ -132,7 +132,7 @@ def test_a_polite_kill_leaves_a_finished_file(tmp_path: Path, name: str) -> None
 def test_a_session_whose_program_is_killed_is_finished_by_its_recording_process(
     tmp_path: Path,
 ) -> None:
-    """kill -9 to the program: a finished file, with the hits that were judged."""
+    """After ``kill -9`` the file is finished, with the hits that were judged."""
     with start(tmp_path, "sim:plates?speed=4") as process:
         assert process.stdout is not None
         for line in process.stdout:
