@@ -171,7 +171,7 @@ def test_the_scripts_of_the_page_run(
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     for script in scripts:
-        exec(compile(script, "library.md", "exec"), names)  # noqa: S102
+        exec(compile(script, "library.md", "exec"), names)
     assert (tmp_path / "all.csv").exists()
 
 
