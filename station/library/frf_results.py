@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import BoolArray
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.frf.measured_frf import measure_frf
@@ -76,17 +77,18 @@ class MeasuredFrfs(Shown):
         pairs = [
             (o, i) for o in range(len(frf.outputs)) for i in range(len(frf.inputs))
         ]
+        seen = excited_lines(frf)
         rows = [
             (
                 f"{frf.outputs[o]} / {frf.inputs[i]}",
                 "-"
                 if frf.coherence is None
-                else f"{np.median(frf.coherence[o, i]):.4f}",
+                else f"{np.median(frf.coherence[o, i, seen]):.4f}",
             )
             for o, i in pairs
         ]
         curves = [
-            Curve(rows[k][0], frf.frequency, np.abs(frf.response[o, i]))
+            Curve(rows[k][0], frf.frequency[seen], np.abs(frf.response[o, i, seen]))
             for k, (o, i) in enumerate(pairs[:_PLOTTED])
         ]
         unit = f"|H| [{FRF_UNITS[frf.kind]}]"
@@ -96,8 +98,16 @@ class MeasuredFrfs(Shown):
             f"{frf.kind.value}, {len(frf.outputs)} outputs x {len(frf.inputs)} inputs, "
             f"{frf.frequency[0]:g} to {frf.frequency[-1]:g} Hz, {averages}"
         )
-        columns = ("output / input", "median coherence")
+        columns = ("output / input", "median coherence in the excited band")
         return ResultView(title, columns, tuple(rows), plots=(plot,))
+
+
+def excited_lines(found: Frf) -> BoolArray:
+    """Return which lines lie in the excited band, shape (n_lines,); all if unknown."""
+    if found.usable_band is None:
+        return np.ones(found.frequency.size, dtype=bool)
+    low, high = found.usable_band
+    return (found.frequency >= low) & (found.frequency <= high)
 
 
 def frf(

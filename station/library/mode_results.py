@@ -10,7 +10,11 @@ import numpy as np
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.signal.modal.mode_ranking import rate_modes
 from jointbench.station.files.frf_files import read_frf
-from jointbench.station.library.frf_results import FRF_UNITS, MeasuredFrfs
+from jointbench.station.library.frf_results import (
+    FRF_UNITS,
+    MeasuredFrfs,
+    excited_lines,
+)
 from jointbench.station.library.hit_results import (
     JudgedHits,
     Source,
@@ -98,8 +102,9 @@ class IdentifiedModes(Shown):
 
     def _plot(self) -> str:
         frf, synthesis = self.chain.frf, self.chain.result.synthesis
+        seen = excited_lines(frf)
         curves = [
-            Curve("measured", frf.frequency, np.abs(frf.response[0, 0])),
+            Curve("measured", frf.frequency[seen], np.abs(frf.response[0, 0, seen])),
             Curve("synthesis", synthesis.frequency, np.abs(synthesis.response[0, 0])),
         ]
         unit = f"|H| {frf.outputs[0]} / {frf.inputs[0]} [{FRF_UNITS[frf.kind]}]"
