@@ -24,6 +24,7 @@ from jointbench.simulators.chassis.modules.inventory import (
     DEFAULT_MODULE,
     Inventory,
     changed,
+    devices,
     module_list,
 )
 from jointbench.simulators.chassis.protocol import add_servicer
@@ -196,7 +197,8 @@ class SimulatedChassis:
 
     def _new_service(self) -> ChassisService:
         setup = self._setup
-        bench = Bench(self._pace, self._signals)
+        inventory = _inventory(setup, self.sensors)
+        bench = Bench(self._pace, self._signals, devices(inventory))
         script = ScriptedFaults(
             tuple(f for f in self._faults if f.kind not in _FROM_THE_START),
             open_inputs=bench.open_inputs,
@@ -204,7 +206,7 @@ class SimulatedChassis:
         )
         script.delivered = self._delivered
         return ChassisService(
-            _inventory(setup, self.sensors),
+            inventory,
             lambda name: SimulatedTask(name, bench),
             faults=script,
             limits=setup.limits,

@@ -36,6 +36,17 @@ class ChannelCalls(Calls):
         return Daqmx.CreateAIVoltageChanResponse()
 
     @answered
+    def CreateAIVoltageChanWithExcit(self, request: Any, context: Any) -> Any:
+        """Add a voltage of a sensor that has a supply."""
+        stated = _limits(request) | {
+            "AI_EXCIT_SRC": number_of(request, "voltage_excit_source"),
+            "AI_EXCIT_VAL": request.voltage_excit_val,
+            "AI_EXCIT_USE_FOR_SCALING": request.use_excit_for_scaling,
+        }
+        self._add(request, kinds.EXCITED, stated)
+        return Daqmx.CreateAIVoltageChanWithExcitResponse()
+
+    @answered
     def CreateAIAccelChan(self, request: Any, context: Any) -> Any:
         """Add an accelerometer."""
         self._add(request, kinds.ACCELERATION, _fed(request, kinds.ACCELERATION))

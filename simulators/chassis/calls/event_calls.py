@@ -63,19 +63,19 @@ class EventCalls(Calls):
     @answered
     def UnregisterEveryNSamplesEvent(self, request: Any, context: Any) -> Any:
         """End the stream of Every N Samples."""
-        self.task(request).events.pop("every_n", None)
+        _forget(self.task(request), "every_n")
         return Daqmx.UnregisterEveryNSamplesEventResponse()
 
     @answered
     def UnregisterDoneEvent(self, request: Any, context: Any) -> Any:
         """End the stream of Done."""
-        self.task(request).events.pop("done", None)
+        _forget(self.task(request), "done")
         return Daqmx.UnregisterDoneEventResponse()
 
     @answered
     def UnregisterSignalEvent(self, request: Any, context: Any) -> Any:
         """End the stream of a signal."""
-        self.task(request).events.pop("signal", None)
+        _forget(self.task(request), "signal")
         return Daqmx.UnregisterSignalEventResponse()
 
     def _stream(
@@ -90,6 +90,8 @@ class EventCalls(Calls):
                 task = self.task(request)
                 with task.guard:
                     check(task)
+                    events.begin(task)
+                    task.streams[events.name] = events
             except Refusal as refusal:
                 refuse(context, refusal, request.task.name)
                 return
@@ -97,17 +99,24 @@ class EventCalls(Calls):
                 context.send_initial_metadata(())
                 yield from self._events(task, events, context)
             finally:
-                task.events.pop(events.name, None)
+                if task.streams.get(events.name) is events:
+                    _forget(task, events.name)
 
     def _events(
         self, task: SimulatedTask, events: "_Events", context: Any
     ) -> Iterator[Any]:
         """Yield events while client, task and registration last."""
         while context.is_active() and self.tasks.get(task.name) is task:
-            if events.name not in task.events:
+            if task.streams.get(events.name) is not events:
                 return
             yield from events.new(task)
             time.sleep(_POLL)
+
+
+def _forget(task: SimulatedTask, name: str) -> None:
+    """End a registration; its stream notices."""
+    task.events.pop(name, None)
+    task.streams.pop(name, None)
 
 
 class _Events:
@@ -116,9 +125,15 @@ class _Events:
     name = ""
 
     def __init__(self) -> None:
+        self._earlier: Acquisition | None = None
         self._seen: Acquisition | None = None
 
+    def begin(self, task: SimulatedTask) -> None:
+        """Take no notice of what the task did before the registration."""
+        self._earlier = self._seen = task.acquisition
+
     def _fresh(self, task: SimulatedTask) -> bool:
+        """Return whether the task was started anew."""
         fresh = task.acquisition is not self._seen
         self._seen = task.acquisition
         return fresh
@@ -140,7 +155,7 @@ class _Every(_Events):
         if self._fresh(task):
             self._sent = 0
         made = task.acquisition
-        if made is None or not (task.running or made.done()):
+        if made is None or made is self._earlier:
             return
         if made.fast and made.position >= self._sent * self._every:
             # A chassis that runs as it is read waits for the reader here.
@@ -192,9 +207,9 @@ def _require_free(task: SimulatedTask, name: str, code: DAQmxErrors) -> None:
 def _require_interval(task: SimulatedTask, kind: int, every: int) -> None:
     if kind != _ACQUIRED:
         raise Refusal(
-            DAQmxErrors.EVERY_N_SAMPS_TRANSFERRED_FROM_BUFFER_NOT_FOR_INPUT,
-            "Every N Samples Transferred From Buffer event is not supported for input "
-            "tasks.",
+            DAQmxErrors.EVERY_N_SAMPS_TRANSFERRED_FROM_BUFFER_EVENT_NOT_SUPPORTED_BY_DEVICE,
+            "Every N Samples Transferred From Buffer event is not supported by the "
+            "device for the channel type specified.",
         )
     if every == 0:
         raise Refusal(

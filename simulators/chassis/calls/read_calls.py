@@ -186,10 +186,7 @@ class ReadCalls(Calls):
             self.faults.delivered += volts.shape[1]
             return volts[wanted], wanted
         finally:
-            # Without a clock, a read leaves the task as it was.
-            if own_start and not task.clocked:
-                with task.guard:
-                    task.stop()
+            self._stop_own(task, own_start)
 
     def _started(self, task: SimulatedTask) -> bool:
         """Start a task that does not run; return whether this was needed.
@@ -209,6 +206,17 @@ class ReadCalls(Calls):
                 )
             task.start()
             return True
+
+    def _stop_own(self, task: SimulatedTask, own_start: bool) -> None:
+        """Stop what a read started: without a clock, or after the last sample."""
+        made = task.acquisition
+        with task.guard:
+            task.started_by_read |= own_start
+            ended = made is not None and made.end is not None
+            if not task.started_by_read or made is None:
+                return
+            if not task.clocked or (ended and made.position >= (made.end or 0)):
+                task.stop()
 
     def _slow_down(self, waiting: Waiting) -> None:
         until = time.monotonic() + self.faults.delay

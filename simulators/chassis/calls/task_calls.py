@@ -9,6 +9,7 @@ from typing import Any
 import grpc
 
 from jointbench.simulators.chassis.calls.answers import Calls, answered
+from jointbench.simulators.chassis.calls.error_words import error_words
 from jointbench.simulators.chassis.modules.inventory import device_named
 from jointbench.simulators.chassis.protocol import (
     Daqmx,
@@ -169,10 +170,9 @@ class TaskCalls(Calls):
     @answered
     def GetErrorString(self, request: Any, context: Any) -> Any:
         """Answer for the name of an error."""
-        known = {int(code): code.name for code in DAQmxErrors}
-        name = known.get(request.error_code, "unknown error")
-        words = name.replace("_", " ").capitalize()
-        return Daqmx.GetErrorStringResponse(error_string=f"{words}.")
+        return Daqmx.GetErrorStringResponse(
+            error_string=error_words(request.error_code)
+        )
 
 
 def _control(task: SimulatedTask, action: int) -> None:

@@ -9,7 +9,6 @@ from jointbench.simulators.chassis.property_values import (
     not_supported,
 )
 from jointbench.simulators.chassis.tasks.task import SimulatedTask
-from jointbench.simulators.chassis.tasks.verification import terminal
 
 # Properties that steer the reading of a running task.
 _WHILE_RUNNING = (
@@ -92,7 +91,7 @@ def _source(task: SimulatedTask, source: str) -> str:
     inputs = [channel.input.name.lower() for channel in task.channels]
     if source.lower() in names + inputs or not task.channels:
         return source
-    return terminal(task.devices, source)
+    return task.terminal(source)
 
 
 def _clock_source(task: SimulatedTask) -> Value:
@@ -100,7 +99,7 @@ def _clock_source(task: SimulatedTask) -> Value:
     stated = task.timing.text("SAMP_CLK_SRC")
     if not stated or stated == "OnboardClock":
         return f"/{task.devices[0].name}/ai/SampleClockTimebase"
-    return terminal(task.devices, stated)
+    return task.terminal(stated)
 
 
 def _timebase(task: SimulatedTask) -> float:

@@ -79,7 +79,12 @@ def input_value(inventory: Inventory, physical: str, attribute: str) -> Value:
     Raises:
         Refusal: there is no such input or property, or no sensor with a TEDS.
     """
-    (found,) = inputs_named(inventory, physical)[:1]
+    try:
+        (found,) = inputs_named(inventory, physical)[:1]
+    except Refusal as refusal:
+        # Of a physical channel without a device, the driver says the same.
+        code = DAQmxErrors.PHYSICAL_CHAN_DOES_NOT_EXIST
+        raise Refusal(code, str(refusal)) from refusal
     short = attribute.removeprefix("PHYSICAL_CHAN_")
     if short == "AI_SUPPORTED_MEAS_TYPES":
         return measurements()

@@ -114,8 +114,9 @@ class Acquisition:
             searching = self.course.triggers.reference is not None
             looked = self._looked - 1 if searching else 0
             return min(max(self._position, self._skipped, looked), self._end)
-        made = self._elapsed() - (self._origin or 0)
-        return min(max(0, made if self._origin is not None else 0), self._end)
+        if self._origin is None and not self._triggered():
+            return 0
+        return min(max(0, self._elapsed() - (self._origin or 0)), self._end)
 
     def _elapsed(self) -> int:
         """Return how many samples the converter has made since the start."""
@@ -280,6 +281,8 @@ def not_yet() -> Refusal:
         "To wait for the samples to become available use a longer read timeout or "
         "read later in your program. To make the samples available sooner, increase "
         "the sample rate. If your task uses a start trigger, make sure that your "
-        "start trigger is configured correctly.",
+        "start trigger is configured correctly. It is also possible that you "
+        "configured the task for external timing, and no clock was supplied. If this "
+        "is the case, supply an external clock.",
         read=0,
     )

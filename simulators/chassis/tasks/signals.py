@@ -12,8 +12,9 @@ from jointbench.simulators.chassis.specimen import Specimen
 from jointbench.simulators.chassis.tasks.virtual_channels import VirtualChannel
 from jointbench.simulators.measuring.converter import Digitiser
 
-# Samples in one period of the sine; the share of the range that is noise.
+# Samples in one period of the sine; its share of the range, and that of the noise.
 _PERIOD = 100
+_SINE = 0.7
 _NOISE = 0.03
 
 
@@ -67,7 +68,7 @@ class SineSignals:
     ) -> FloatArray:
         """Return samples [V], shape (n_channels, count)."""
         at = np.arange(first, first + count)
-        wave = (1 - _NOISE) * np.sin(2 * np.pi * at / _PERIOD)
+        wave = _SINE * np.sin(2 * np.pi * at / _PERIOD)
         made = []
         for channel in channels:
             # A number by sample, so that a sample does not depend on the reads.

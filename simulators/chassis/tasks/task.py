@@ -52,6 +52,7 @@ class Bench:
     Attributes:
         pace: time base.
         signals: at the inputs.
+        devices: all of them.
         reservations: who holds which device.
         running: names of the running tasks.
         open_inputs: numbers of the inputs whose IEPE loop is open.
@@ -59,6 +60,7 @@ class Bench:
 
     pace: Pace
     signals: Signals
+    devices: tuple[Device, ...] = ()
     reservations: Reservations = field(default_factory=Reservations)
     running: set[str] = field(default_factory=set)
     open_inputs: set[int] = field(default_factory=set)
@@ -77,8 +79,10 @@ class SimulatedTask:
         self.exports = PropertyValues(task_defaults.EXPORT)
         self.overloaded: set[str] = set()
         self.events: dict[str, int] = {}
+        self.streams: dict[str, object] = {}
         self.state = TaskState.UNVERIFIED
         self.acquisition: Acquisition | None = None
+        self.started_by_read = False
         self.guard = threading.RLock()
         self._bench = bench
         self._before = TaskState.UNVERIFIED
@@ -133,6 +137,14 @@ class SimulatedTask:
             rate, samples, finite=self.finite is not None
         )
 
+    def terminal(self, named: str) -> str:
+        """Return the full name of a terminal.
+
+        Raises:
+            Refusal: no device has it.
+        """
+        return terminal(self.devices[0], self._bench.devices, named)
+
     def change(self) -> None:
         """Prepare for a change of channels or properties.
 
@@ -162,10 +174,14 @@ class SimulatedTask:
             rate = self.rate
             source = self.timing.text("SAMP_CLK_SRC")
             if source and source != "OnboardClock":
-                terminal(self.devices, source)
+                self.terminal(source)
         self._verify_buffer()
         plan = trigger_plan(
-            self.triggers, self.channels, clocked=self.clocked, finite=self.finite
+            self.triggers,
+            self.channels,
+            clocked=self.clocked,
+            finite=self.finite,
+            terminal=self.terminal,
         )
         overwrites = self.reading.whole("OVERWRITE") == _OVERWRITES
         return Course(
@@ -232,6 +248,7 @@ class SimulatedTask:
             self._bench.signals.begin(course.rate)
         self.overloaded.clear()
         self.acquisition = Acquisition(course, self._bench.pace, self._volts)
+        self.started_by_read = False
         self._bench.running.add(self.name)
         self.state = TaskState.RUNNING
 

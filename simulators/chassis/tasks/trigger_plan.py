@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Triggers of a task: verified, and as searches in volts."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from jointbench.simulators.chassis.property_values import PropertyValues
@@ -12,7 +13,6 @@ from jointbench.simulators.chassis.protocol import (
     constants,
 )
 from jointbench.simulators.chassis.tasks.edge_search import EdgeSearch
-from jointbench.simulators.chassis.tasks.verification import terminal
 from jointbench.simulators.chassis.tasks.virtual_channels import VirtualChannel
 
 _KIND = constants.TriggerType
@@ -45,6 +45,7 @@ def trigger_plan(
     *,
     clocked: bool,
     finite: int | None,
+    terminal: Callable[[str], str],
 ) -> TriggerPlan:
     """Return the triggers of a task.
 
@@ -53,6 +54,7 @@ def trigger_plan(
         channels: of the task.
         clocked: it has a sample clock.
         finite: samples of the block, None for a continuous task.
+        terminal: finds a terminal by its name, or refuses it.
 
     Raises:
         Refusal: they do not fit each other, the timing, or the hardware.
@@ -63,6 +65,9 @@ def trigger_plan(
             DAQmxErrors.TRIG_WHEN_ON_DEMAND_SAMP_TIMING,
             "Specified trigger type is not valid for on-demand sample timing.",
         )
+    for which in ("START_TRIG", "REF_TRIG"):
+        if triggers.whole(f"{which}_TYPE") == _KIND.DIGITAL_EDGE.value:
+            terminal(triggers.text(f"DIG_EDGE_{which}_SRC"))
     start = _search(triggers, "START_TRIG", channels)
     reference = _search(triggers, "REF_TRIG", channels)
     before = triggers.whole("REF_TRIG_PRETRIG_SAMPLES")
@@ -99,8 +104,6 @@ def _search(
     if kind == _KIND.NONE.value:
         return None
     if kind == _KIND.DIGITAL_EDGE.value:
-        devices = [channel.input.device for channel in channels]
-        terminal(devices, triggers.text(f"DIG_EDGE_{which}_SRC"))
         return _IMMEDIATE
     kinds = {_KIND.ANALOG_EDGE.value: "EDGE", _KIND.ANALOG_WINDOW.value: "WIN"}
     trigger_name = "RefTrig" if which == "REF_TRIG" else "StartTrig"
@@ -122,7 +125,7 @@ def _analogue(
     source = triggers.text(f"{prefix}_SRC")
     edge = prefix.startswith("ANLG_EDGE")
     named = f"Anlg{'Edge' if edge else 'Win'}_{trigger_name}"
-    if source.lower().endswith("apfi0") and not channels[0].input.device.chassis:
+    if re.search(r"apfi[01]$", source.lower()) and not channels[0].input.device.chassis:
         return _IMMEDIATE
     index = _source_index(source, named, channels)
     channel, scale = channels[index], channels[index].volts_per_unit

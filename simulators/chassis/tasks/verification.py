@@ -169,16 +169,21 @@ def verify_samples(timing: PropertyValues) -> None:
         )
 
 
-def terminal(devices: Sequence[Device], named: str) -> str:
-    """Return the full name of a terminal, ``"PFI0"`` being that of the first device.
+def terminal(own: Device, all_: Sequence[Device], named: str) -> str:
+    """Return the full name of a terminal.
+
+    Args:
+        own: device of the task, to which a name without a device belongs.
+        all_: devices whose terminals can be routed to it.
+        named: terminal, ``"PFI0"`` or ``"/Dev1/PFI0"``.
 
     Raises:
         Refusal: no device has it.
     """
-    full = named if named.startswith("/") else f"/{devices[0].name}/{named}"
-    known = {name.lower(): name for each in devices for name in terminals(each)}
-    lines = (*known, *(f"/{each.name}/apfi0".lower() for each in devices))
-    if full.lower() not in lines:
+    full = named if named.startswith("/") else f"/{own.name}/{named}"
+    known = {name.lower(): name for each in all_ for name in terminals(each)}
+    analogue = {f"/{each.name}/apfi{n}".lower() for each in all_ for n in (0, 1)}
+    if full.lower() not in known and full.lower() not in analogue:
         raise Refusal(
             DAQmxErrors.INVALID_ROUTING_SOURCE_TERMINAL_NAME_ROUTING,
             "Source terminal to be routed could not be found on the device.\n\n"

@@ -56,6 +56,7 @@ class Measured:
 
 
 VOLTAGE = Measured(_USAGE.VOLTAGE.value, "", "AI_VOLTAGE_UNITS")
+EXCITED = Measured(_USAGE.VOLTAGE_CUSTOM_WITH_EXCITATION.value, "", "AI_VOLTAGE_UNITS")
 ACCELERATION = Measured(
     _USAGE.ACCELERATION_ACCELEROMETER_CURRENT_INPUT.value,
     "AI_ACCEL_SENSITIVITY",
@@ -102,7 +103,8 @@ class VirtualChannel:
         units = _RETURNED[self.values.whole(self.measured.units)]
         name = self.measured.sensitivity
         if not name:
-            return units
+            divides = self.values.get("AI_EXCIT_USE_FOR_SCALING")
+            return units * (self.values.number("AI_EXCIT_VAL") if divides else 1.0)
         stated = self.values.number(name)
         if self.measured is SOUND:
             return 1e-3 * stated * units
@@ -165,6 +167,7 @@ def _defaults(at: Input, measured: Measured) -> dict[str, Value]:
         "AI_COUPLING": 0,
         "AI_EXCIT_SRC": _NO_SOURCE,
         "AI_EXCIT_VAL": 0.0,
+        "AI_EXCIT_USE_FOR_SCALING": False,
         "AI_RNG_HIGH": max(module.ranges),
         "AI_RNG_LOW": -max(module.ranges),
         "AI_RAW_SAMP_SIZE": 16 if module.bits <= 16 else 32,
