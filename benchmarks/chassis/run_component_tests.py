@@ -143,7 +143,7 @@ def _head() -> list[str]:
     return [
         "# Programs of others on the simulated chassis",
         "NI's own files of [nidaqmx-python](https://github.com/ni/nidaqmx-python), "
-        "unchanged, run against the chassis of [simulate](chassis.md). Its devices take "
+        "unchanged, run against the [simulated chassis](chassis.md). Its devices take "
         "the names that the files use; signals are a noisy sine, as in NI's simulated "
         "devices.",
         "Written by `benchmarks/chassis/run_examples.py` and `run_component_tests.py`.",

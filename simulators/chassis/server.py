@@ -27,6 +27,7 @@ from jointbench.simulators.chassis.modules.inventory import (
     devices,
     module_list,
 )
+from jointbench.simulators.chassis.modules.lookup import described
 from jointbench.simulators.chassis.protocol import add_servicer
 from jointbench.simulators.chassis.specimen import StreamedSpecimen
 from jointbench.simulators.chassis.tasks.acquisition import Pace
@@ -35,7 +36,7 @@ from jointbench.simulators.chassis.tasks.signals import (
     SineSignals,
     SpecimenSignals,
 )
-from jointbench.simulators.chassis.tasks.task import Bench, SimulatedTask
+from jointbench.simulators.chassis.tasks.task import SharedBench, SimulatedTask
 from jointbench.simulators.plates.plates_bench import (
     LivePlates,
     PlannedStroke,
@@ -128,6 +129,10 @@ class SimulatedChassis:
         """Sensors at the first inputs."""
         return () if self._live is None else self._live.sensors
 
+    def described(self) -> list[str]:
+        """Return a line for each module: its inputs, range, currents and rates."""
+        return [described(each) for each in devices(_inventory(self._setup, ()))]
+
     def __enter__(self) -> "SimulatedChassis":
         """Start listening."""
         self.start()
@@ -198,7 +203,7 @@ class SimulatedChassis:
     def _new_service(self) -> ChassisService:
         setup = self._setup
         inventory = _inventory(setup, self.sensors)
-        bench = Bench(self._pace, self._signals, devices(inventory))
+        bench = SharedBench(self._pace, self._signals, devices(inventory))
         script = ScriptedFaults(
             tuple(f for f in self._faults if f.kind not in _FROM_THE_START),
             open_inputs=bench.open_inputs,

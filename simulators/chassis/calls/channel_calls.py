@@ -8,7 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 from jointbench.simulators.chassis.calls.answers import Calls, answered
-from jointbench.simulators.chassis.modules.inventory import Input, inputs_named
+from jointbench.simulators.chassis.modules.inventory import Input
+from jointbench.simulators.chassis.modules.lookup import inputs_named
 from jointbench.simulators.chassis.property_values import Value
 from jointbench.simulators.chassis.protocol import (
     Daqmx,
@@ -17,9 +18,13 @@ from jointbench.simulators.chassis.protocol import (
     constants,
     number_of,
 )
-from jointbench.simulators.chassis.tasks import virtual_channels as kinds
+from jointbench.simulators.chassis.tasks import measurements as kinds
+from jointbench.simulators.chassis.tasks.measurements import Measurement
 from jointbench.simulators.chassis.tasks.task import SimulatedTask
-from jointbench.simulators.chassis.tasks.virtual_channels import Measured, new_channel
+from jointbench.simulators.chassis.tasks.virtual_channels import (
+    Measurement,
+    new_channel,
+)
 
 _DEFAULT = constants.TerminalConfiguration.DEFAULT.value
 _CUSTOM = constants.VoltageUnits.FROM_CUSTOM_SCALE.value
@@ -66,17 +71,19 @@ class ChannelCalls(Calls):
 
     @answered
     def CreateAIMicrophoneChan(self, request: Any, context: Any) -> Any:
-        """Add a microphone; its limits follow from the loudest sound."""
-        loudest = _QUIETEST * 10 ** (request.max_snd_press_level / 20)
+        """Add a microphone; its limits follow from the highest sound pressure."""
+        highest = _QUIETEST * 10 ** (request.max_snd_press_level / 20)
         stated = _supply(request) | {
             "AI_MICROPHONE_SENSITIVITY": request.mic_sensitivity,
-            "AI_MAX": 2**0.5 * loudest,
-            "AI_MIN": -(2**0.5) * loudest,
+            "AI_MAX": 2**0.5 * highest,
+            "AI_MIN": -(2**0.5) * highest,
         }
         self._add(request, kinds.SOUND, stated)
         return Daqmx.CreateAIMicrophoneChanResponse()
 
-    def _add(self, request: Any, measured: Measured, stated: dict[str, Value]) -> None:
+    def _add(
+        self, request: Any, measured: Measurement, stated: dict[str, Value]
+    ) -> None:
         task = self.task(request)
         stated[measured.units] = number_of(request, "units")
         if stated[measured.units] == _CUSTOM:
@@ -110,7 +117,7 @@ def _supply(request: Any) -> dict[str, Value]:
     return {"AI_EXCIT_SRC": source, "AI_EXCIT_VAL": request.current_excit_val}
 
 
-def _fed(request: Any, measured: Measured) -> dict[str, Value]:
+def _fed(request: Any, measured: Measurement) -> dict[str, Value]:
     units = number_of(request, "sensitivity_units")
     own: dict[str, Value] = {
         measured.sensitivity: request.sensitivity,

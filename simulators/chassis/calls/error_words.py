@@ -11,7 +11,7 @@ def error_words(code: int) -> str:
         return str(not_yet())
     if code == DAQmxErrors.INVALID_ATTRIBUTE_VALUE:
         return str(bad_value("", "")).partition("\n")[0]
-    known = {int(each): each.name for each in DAQmxErrors}
+    known: dict[int, str] = {int(each): each.name for each in DAQmxErrors}
     if code not in known:
         return "Error code could not be found. Reinstalling the driver might help."
-    return known[code].replace("_", " ").capitalize() + "."
+    return f"{known[code].replace('_', ' ').capitalize()}."

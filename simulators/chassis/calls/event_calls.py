@@ -133,7 +133,7 @@ class _Events:
         self._earlier = self._seen = task.acquisition
 
     def _fresh(self, task: SimulatedTask) -> bool:
-        """Return whether the task was started anew."""
+        """Return whether the task was started again."""
         fresh = task.acquisition is not self._seen
         self._seen = task.acquisition
         return fresh

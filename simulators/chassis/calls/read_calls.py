@@ -21,7 +21,7 @@ from jointbench.simulators.chassis.protocol import (
     constants,
     number_of,
 )
-from jointbench.simulators.chassis.tasks.acquisition import Waiting
+from jointbench.simulators.chassis.tasks.acquisition import Patience
 from jointbench.simulators.chassis.tasks.task import (
     MOST_BYTES,
     SimulatedTask,
@@ -178,7 +178,7 @@ class ReadCalls(Calls):
             if count * len(task.channels) * _BYTES > MOST_BYTES:
                 raise no_memory()
             self.faults.before_read(task, count)
-            waiting = Waiting(timeout=timeout, alive=context.is_active)
+            waiting = Patience(timeout=timeout, alive=context.is_active)
             with self.waiters.occupied(context):
                 self._slow_down(waiting)
                 volts = made.read(count, waiting, first=_first(task))
@@ -218,7 +218,7 @@ class ReadCalls(Calls):
             if not task.clocked or (ended and made.position >= (made.end or 0)):
                 task.stop()
 
-    def _slow_down(self, waiting: Waiting) -> None:
+    def _slow_down(self, waiting: Patience) -> None:
         until = time.monotonic() + self.faults.delay
         while self.faults.delay and time.monotonic() < until and waiting.alive():
             time.sleep(min(_LONGEST_SLEEP, self.faults.delay))

@@ -10,7 +10,7 @@ import grpc
 
 from jointbench.simulators.chassis.calls.answers import Calls, answered
 from jointbench.simulators.chassis.calls.error_words import error_words
-from jointbench.simulators.chassis.modules.inventory import device_named
+from jointbench.simulators.chassis.modules.lookup import device_named
 from jointbench.simulators.chassis.protocol import (
     Daqmx,
     DAQmxErrors,
@@ -19,7 +19,7 @@ from jointbench.simulators.chassis.protocol import (
     constants,
     number_of,
 )
-from jointbench.simulators.chassis.tasks.acquisition import Waiting
+from jointbench.simulators.chassis.tasks.acquisition import Patience
 from jointbench.simulators.chassis.tasks.task import SimulatedTask, TaskState
 
 _MODE = constants.TaskMode
@@ -91,7 +91,7 @@ class TaskCalls(Calls):
         """Wait for the last sample of a task."""
         task = self.task(request)
         if task.running and task.acquisition is not None:
-            waiting = Waiting(timeout=request.time_to_wait, alive=context.is_active)
+            waiting = Patience(timeout=request.time_to_wait, alive=context.is_active)
             with self.waiters.occupied(context):
                 task.acquisition.await_end(waiting)
         return Daqmx.WaitUntilTaskDoneResponse()

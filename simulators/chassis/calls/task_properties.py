@@ -103,7 +103,7 @@ def _clock_source(task: SimulatedTask) -> Value:
 
 
 def _timebase(task: SimulatedTask) -> float:
-    """Return the clock behind the sample clock [Hz]."""
+    """Return the clock that the sample clock divides [Hz]."""
     rates = task.devices[0].type.rates
     return rates.clock or rates.fastest
 

@@ -4,18 +4,20 @@
 from collections.abc import Callable
 
 from jointbench.simulators.chassis.modules.inventory import (
-    CHASSIS_PRODUCT,
     TIMING_ENGINES,
     Device,
     Inventory,
+    devices,
+)
+from jointbench.simulators.chassis.modules.lookup import (
     device_named,
     device_names,
-    devices,
     inputs_named,
 )
 from jointbench.simulators.chassis.property_values import Value
 from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal, constants
 
+_CHASSIS_PRODUCT = "cDAQ-9178"
 _VERSION = {
     "NIDAQ_MAJOR_VERSION": 24,
     "NIDAQ_MINOR_VERSION": 5,
@@ -124,7 +126,7 @@ def _of_chassis(inventory: Inventory, attribute: str) -> Value:
     modules = (each.name for each in devices(inventory) if each.chassis)
     category = constants.ProductCategory.COMPACT_DAQ_CHASSIS
     values: dict[str, Value] = {
-        "PRODUCT_TYPE": CHASSIS_PRODUCT,
+        "PRODUCT_TYPE": _CHASSIS_PRODUCT,
         "PRODUCT_CATEGORY": category.value,
         "BUS_TYPE": constants.BusType.USB.value,
         "SERIAL_NUM": _SERIAL,

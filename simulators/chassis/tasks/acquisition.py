@@ -58,11 +58,11 @@ class Course:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Waiting:
+class Patience:
     """How long a call waits.
 
     Attributes:
-        timeout: [s]; below zero for ever.
+        timeout: [s]; below zero for no limit.
         alive: whether the client is still there.
     """
 
@@ -134,12 +134,12 @@ class Acquisition:
         self._triggered()
         return self._end != _NEVER and (self.fast or self.acquired() >= self._end)
 
-    def await_end(self, waiting: Waiting) -> None:
+    def await_end(self, waiting: Patience) -> None:
         """Wait for the last sample.
 
         Raises:
             Refusal: it does not come in time, as in a continuous task.
-            ClientGone: nobody waits any longer.
+            ClientGone: the client has disconnected.
         """
         deadline = self._deadline(waiting)
         while not self.done():
@@ -152,7 +152,7 @@ class Acquisition:
                 )
             self._sleep(_LONGEST_SLEEP, waiting)
 
-    def read(self, count: int, waiting: Waiting, *, first: int | None) -> FloatArray:
+    def read(self, count: int, waiting: Patience, *, first: int | None) -> FloatArray:
         """Wait for samples and return them [V], shape (n_channels, at most count).
 
         Fewer are returned only at the end of a finite task.
@@ -164,7 +164,7 @@ class Acquisition:
 
         Raises:
             Refusal: they do not come in time, are overwritten, or never come.
-            ClientGone: nobody waits any longer.
+            ClientGone: the client has disconnected.
         """
         deadline = self._deadline(waiting)
         self._await_triggers(deadline, waiting)
@@ -177,12 +177,12 @@ class Acquisition:
         self._position = begin + count
         return samples
 
-    def _deadline(self, waiting: Waiting) -> float:
+    def _deadline(self, waiting: Patience) -> float:
         return self._pace.now() + (
             waiting.timeout if waiting.timeout >= 0 else math.inf
         )
 
-    def _sleep(self, seconds: float, waiting: Waiting) -> None:
+    def _sleep(self, seconds: float, waiting: Patience) -> None:
         if not waiting.alive():
             raise ClientGone
         self._pace.sleep(seconds)
@@ -227,7 +227,7 @@ class Acquisition:
             read=0,
         )
 
-    def _await_samples(self, need: int, deadline: float, waiting: Waiting) -> None:
+    def _await_samples(self, need: int, deadline: float, waiting: Patience) -> None:
         while not self.fast:
             missing = (need - self.acquired()) / (self.course.rate * self._pace.speed)
             left = deadline - self._pace.now()
@@ -237,7 +237,7 @@ class Acquisition:
                 raise not_yet()
             self._sleep(min(max(missing, 1e-3), left, _LONGEST_SLEEP), waiting)
 
-    def _await_triggers(self, deadline: float, waiting: Waiting) -> None:
+    def _await_triggers(self, deadline: float, waiting: Patience) -> None:
         while not self._triggered():
             if self._pace.now() >= deadline:
                 raise not_yet()

@@ -46,7 +46,7 @@ class TaskState(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Bench:
+class SharedBench:
     """What tasks share.
 
     Attributes:
@@ -69,7 +69,7 @@ class Bench:
 class SimulatedTask:
     """State of one task; the service serialises its changes by `guard`."""
 
-    def __init__(self, name: str, bench: Bench) -> None:
+    def __init__(self, name: str, bench: SharedBench) -> None:
         self.name = name
         self.channels: list[VirtualChannel] = []
         self.timing = PropertyValues(task_defaults.TIMING)

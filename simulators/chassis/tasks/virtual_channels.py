@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from jointbench.simulators.chassis.modules.inventory import Input
 from jointbench.simulators.chassis.property_values import PropertyValues, Value
 from jointbench.simulators.chassis.protocol import constants
+from jointbench.simulators.chassis.tasks.measurements import SOUND, Measurement
 
 _STANDARD_GRAVITY = 9.80665
 _POUND_FORCE = 4.4482216152605
 _INCH = 0.0254
-_USAGE = constants.UsageTypeAI
 _INTERNAL = constants.ExcitationSource.INTERNAL.value
 _NO_SOURCE = constants.ExcitationSource.NONE.value
 
@@ -40,43 +40,6 @@ _RETURNED = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """A type of measurement.
-
-    Attributes:
-        usage: NI's number of it.
-        sensitivity: property with the sensitivity; its units have ``_UNITS``.
-        units: property with the unit of the values returned.
-    """
-
-    usage: int
-    sensitivity: str
-    units: str
-
-
-VOLTAGE = Measured(_USAGE.VOLTAGE.value, "", "AI_VOLTAGE_UNITS")
-EXCITED = Measured(_USAGE.VOLTAGE_CUSTOM_WITH_EXCITATION.value, "", "AI_VOLTAGE_UNITS")
-ACCELERATION = Measured(
-    _USAGE.ACCELERATION_ACCELEROMETER_CURRENT_INPUT.value,
-    "AI_ACCEL_SENSITIVITY",
-    "AI_ACCEL_UNITS",
-)
-FORCE = Measured(
-    _USAGE.FORCE_IEPE_SENSOR.value, "AI_FORCE_IEPE_SENSOR_SENSITIVITY", "AI_FORCE_UNITS"
-)
-VELOCITY = Measured(
-    _USAGE.VELOCITY_IEPE_SENSOR.value,
-    "AI_VELOCITY_IEPE_SENSOR_SENSITIVITY",
-    "AI_VELOCITY_UNITS",
-)
-SOUND = Measured(
-    _USAGE.SOUND_PRESSURE_MICROPHONE.value,
-    "AI_MICROPHONE_SENSITIVITY",
-    "AI_SOUND_PRESSURE_UNITS",
-)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class VirtualChannel:
     """A channel of a task.
@@ -90,7 +53,7 @@ class VirtualChannel:
 
     name: str
     input: Input
-    measured: Measured
+    measured: Measurement
     values: PropertyValues
 
     @property
@@ -145,7 +108,7 @@ class VirtualChannel:
 
 
 def new_channel(
-    name: str, at: Input, measured: Measured, stated: dict[str, Value]
+    name: str, at: Input, measured: Measurement, stated: dict[str, Value]
 ) -> VirtualChannel:
     """Return a channel with the stated properties."""
     channel = VirtualChannel(
@@ -156,7 +119,7 @@ def new_channel(
     return channel
 
 
-def _defaults(at: Input, measured: Measured) -> dict[str, Value]:
+def _defaults(at: Input, measured: Measurement) -> dict[str, Value]:
     module = at.device.type
     terminal = constants.TerminalConfiguration[module.terminals[0]].value
     values: dict[str, Value] = {

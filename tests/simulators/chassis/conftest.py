@@ -32,7 +32,7 @@ def channel(server: SimulatedChassis) -> Iterator[grpc.Channel]:
 
 @pytest.fixture
 def new_task(channel: grpc.Channel) -> Iterator[NewTask]:
-    """Return a maker of tasks, which are closed after the test."""
+    """Return a function that makes tasks, which are closed after the test."""
     made: list[nidaqmx.Task] = []
 
     def new(name: str = "", **options: object) -> nidaqmx.Task:

@@ -99,7 +99,7 @@ def test_one_sample_is_read_as_a_number(new_task: NewTask) -> None:
     assert one == pytest.approx(1.0, abs=1e-3)
 
 
-def test_a_read_begins_where_it_is_told(new_task: NewTask) -> None:
+def test_a_read_begins_at_the_stated_sample(new_task: NewTask) -> None:
     """At a sample of the block, and relative to the position."""
     task = block(new_task())
     task.start()
@@ -224,7 +224,7 @@ def test_the_limits_read_back_are_those_of_the_range(new_task: NewTask) -> None:
 
 
 def test_a_task_remembers_its_state(new_task: NewTask, channel: grpc.Channel) -> None:
-    """Reserved before a start, reserved after the stop: nobody else gets the module."""
+    """Reserved before a start, reserved after the stop: no other task gets the module."""
     task, other = block(new_task()), block(new_task())
     task.control(TaskMode.TASK_COMMIT)
     task.start()

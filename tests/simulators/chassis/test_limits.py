@@ -99,6 +99,6 @@ def test_a_client_that_dies_frees_its_workers(server: SimulatedChassis) -> None:
     assert waiters._counts.total() == 0  # noqa: SLF001
 
 
-def test_the_server_listens_on_this_computer_alone_unless_told_otherwise() -> None:
+def test_the_server_listens_on_this_computer_alone_unless_a_host_is_stated() -> None:
     """The loopback interface by default."""
     assert ChassisSetup().host == "127.0.0.1"

@@ -244,7 +244,7 @@ def level_beyond_the_range(task: nidaqmx.Task) -> None:
     task.start()
 
 
-def trigger_by_a_stranger(task: nidaqmx.Task) -> None:
+def trigger_by_a_foreign_channel(task: nidaqmx.Task) -> None:
     """A channel that is not in the task."""
     trigger = clocked(task).triggers.reference_trigger
     trigger.cfg_anlg_edge_ref_trig(f"{MODULE}/ai3", 10)
@@ -358,7 +358,7 @@ REFUSED: tuple[tuple[Callable[[nidaqmx.Task], None], DAQmxErrors], ...] = (
     (pretrigger_too_long, E.TOO_MANY_PRETRIG_PLUS_MIN_POST_TRIG_SAMPS),
     (pretrigger_too_short, E.INVALID_ATTRIBUTE_VALUE),
     (level_beyond_the_range, E.INVALID_ATTRIBUTE_VALUE),
-    (trigger_by_a_stranger, E.INVALID_ATTRIBUTE_VALUE),
+    (trigger_by_a_foreign_channel, E.INVALID_ATTRIBUTE_VALUE),
     (no_such_line, E.INVALID_ROUTING_SOURCE_TERMINAL_NAME_ROUTING),
     (no_such_clock, E.INVALID_ROUTING_SOURCE_TERMINAL_NAME_ROUTING),  # seen
     (property_of_other_hardware, E.ATTRIBUTE_NOT_SUPPORTED_IN_TASK_CONTEXT),
@@ -436,7 +436,7 @@ def test_a_chassis_runs_three_tasks_and_no_fourth(new_task: NewTask) -> None:
 def test_a_name_that_is_taken_is_a_duplicate_for_a_new_session(
     new_task: NewTask,
 ) -> None:
-    """By default the client attaches; told to be new, it is refused."""
+    """By default the client attaches; a new session is refused."""
     new_task("mine")
     with pytest.raises(nidaqmx.DaqError) as refused:
         new_task(
@@ -457,7 +457,7 @@ def test_an_event_is_registered_once(new_task: NewTask) -> None:
 
 
 def test_a_task_on_demand_has_no_clock(new_task: NewTask) -> None:
-    """Its timing type says so, and it is always done."""
+    """Its timing type shows it, and it is always done."""
     task = new_task()
     volt(task)
     assert task.timing.samp_timing_type == SampleTimingType.ON_DEMAND
