@@ -21,10 +21,7 @@ from jointbench.simulators.chassis.protocol import (
 from jointbench.simulators.chassis.tasks import measurements as kinds
 from jointbench.simulators.chassis.tasks.measurements import Measurement
 from jointbench.simulators.chassis.tasks.task import SimulatedTask
-from jointbench.simulators.chassis.tasks.virtual_channels import (
-    Measurement,
-    new_channel,
-)
+from jointbench.simulators.chassis.tasks.virtual_channels import new_channel
 
 _DEFAULT = constants.TerminalConfiguration.DEFAULT.value
 _CUSTOM = constants.VoltageUnits.FROM_CUSTOM_SCALE.value

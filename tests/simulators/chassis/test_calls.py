@@ -224,7 +224,7 @@ def test_the_limits_read_back_are_those_of_the_range(new_task: NewTask) -> None:
 
 
 def test_a_task_remembers_its_state(new_task: NewTask, channel: grpc.Channel) -> None:
-    """Reserved before a start, reserved after the stop: no other task gets the module."""
+    """Reserved before a start and after the stop: no other task gets the module."""
     task, other = block(new_task()), block(new_task())
     task.control(TaskMode.TASK_COMMIT)
     task.start()
