@@ -18,8 +18,8 @@ from jointbench.simulators.chassis.protocol import (
     constants,
     number_of,
 )
-from jointbench.simulators.chassis.tasks import measurements as kinds
-from jointbench.simulators.chassis.tasks.measurements import Measurement
+from jointbench.simulators.chassis.tasks import measured_quantities as kinds
+from jointbench.simulators.chassis.tasks.measured_quantities import MeasuredQuantity
 from jointbench.simulators.chassis.tasks.task import SimulatedTask
 from jointbench.simulators.chassis.tasks.virtual_channels import new_channel
 
@@ -79,7 +79,7 @@ class ChannelCalls(Calls):
         return Daqmx.CreateAIMicrophoneChanResponse()
 
     def _add(
-        self, request: Any, measured: Measurement, stated: dict[str, Value]
+        self, request: Any, measured: MeasuredQuantity, stated: dict[str, Value]
     ) -> None:
         task = self.task(request)
         stated[measured.units] = number_of(request, "units")
@@ -114,7 +114,7 @@ def _supply(request: Any) -> dict[str, Value]:
     return {"AI_EXCIT_SRC": source, "AI_EXCIT_VAL": request.current_excit_val}
 
 
-def _fed(request: Any, measured: Measurement) -> dict[str, Value]:
+def _fed(request: Any, measured: MeasuredQuantity) -> dict[str, Value]:
     units = number_of(request, "sensitivity_units")
     own: dict[str, Value] = {
         measured.sensitivity: request.sensitivity,

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from jointbench.simulators.chassis.modules.inventory import Input
 from jointbench.simulators.chassis.property_values import PropertyValues, Value
 from jointbench.simulators.chassis.protocol import constants
-from jointbench.simulators.chassis.tasks.measurements import SOUND, Measurement
+from jointbench.simulators.chassis.tasks.measured_quantities import (
+    SOUND,
+    MeasuredQuantity,
+)
 
 _STANDARD_GRAVITY = 9.80665
 _POUND_FORCE = 4.4482216152605
@@ -53,7 +56,7 @@ class VirtualChannel:
 
     name: str
     input: Input
-    measured: Measurement
+    measured: MeasuredQuantity
     values: PropertyValues
 
     @property
@@ -108,7 +111,7 @@ class VirtualChannel:
 
 
 def new_channel(
-    name: str, at: Input, measured: Measurement, stated: dict[str, Value]
+    name: str, at: Input, measured: MeasuredQuantity, stated: dict[str, Value]
 ) -> VirtualChannel:
     """Return a channel with the stated properties."""
     channel = VirtualChannel(
@@ -119,7 +122,7 @@ def new_channel(
     return channel
 
 
-def _defaults(at: Input, measured: Measurement) -> dict[str, Value]:
+def _defaults(at: Input, measured: MeasuredQuantity) -> dict[str, Value]:
     module = at.device.type
     terminal = constants.TerminalConfiguration[module.terminals[0]].value
     values: dict[str, Value] = {

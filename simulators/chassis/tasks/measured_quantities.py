@@ -9,7 +9,7 @@ _USAGE = constants.UsageTypeAI
 
 
 @dataclass(frozen=True, slots=True)
-class Measurement:
+class MeasuredQuantity:
     """A type of measurement.
 
     Attributes:
@@ -23,24 +23,24 @@ class Measurement:
     units: str
 
 
-VOLTAGE = Measurement(_USAGE.VOLTAGE.value, "", "AI_VOLTAGE_UNITS")
-EXCITED = Measurement(
+VOLTAGE = MeasuredQuantity(_USAGE.VOLTAGE.value, "", "AI_VOLTAGE_UNITS")
+EXCITED = MeasuredQuantity(
     _USAGE.VOLTAGE_CUSTOM_WITH_EXCITATION.value, "", "AI_VOLTAGE_UNITS"
 )
-ACCELERATION = Measurement(
+ACCELERATION = MeasuredQuantity(
     _USAGE.ACCELERATION_ACCELEROMETER_CURRENT_INPUT.value,
     "AI_ACCEL_SENSITIVITY",
     "AI_ACCEL_UNITS",
 )
-FORCE = Measurement(
+FORCE = MeasuredQuantity(
     _USAGE.FORCE_IEPE_SENSOR.value, "AI_FORCE_IEPE_SENSOR_SENSITIVITY", "AI_FORCE_UNITS"
 )
-VELOCITY = Measurement(
+VELOCITY = MeasuredQuantity(
     _USAGE.VELOCITY_IEPE_SENSOR.value,
     "AI_VELOCITY_IEPE_SENSOR_SENSITIVITY",
     "AI_VELOCITY_UNITS",
 )
-SOUND = Measurement(
+SOUND = MeasuredQuantity(
     _USAGE.SOUND_PRESSURE_MICROPHONE.value,
     "AI_MICROPHONE_SENSITIVITY",
     "AI_SOUND_PRESSURE_UNITS",
