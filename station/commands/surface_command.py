@@ -34,7 +34,9 @@ from jointbench.station.pipeline.surface_stages import (
     chain_cautions,
     with_band,
     with_remedy,
+    with_texture,
 )
+from jointbench.station.roughness.texture_screen import show_textures
 from jointbench.station.screen.band_limited_words import (
     COLUMNS,
     TITLE,
@@ -69,6 +71,7 @@ def run_surface(
         with working(f"fitting {surface.name}"):
             fitted = with_band(analyse_surface(surface, options), options)
             chain = with_remedy(fitted, surface, options)
+            chain = with_texture(chain, surface, options)
         if options.structure_map is not None:
             write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
@@ -104,6 +107,7 @@ def show_surfaces(
         for line in chain.beside.lines:
             screen.print(f"  {chain.surface.name}: {line}", markup=False)
     _show_bands(screen, chains, pooled)
+    show_textures(screen, chains)
     if pooled is not None:
         for line in (pooled.fit.reason, *pooled.beside.lines):
             screen.print(f"  {pooled.structure.name}: {line}", markup=False)
