@@ -7,11 +7,11 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
-CENTRAL_SHARE = 0.4
+_CENTRAL_SHARE = 0.4
 """Material ratio that the central region spans [-]."""
-PEAK_RATIO, VALLEY_RATIO = 0.10, 0.80
+_PEAK_RATIO, _VALLEY_RATIO = 0.10, 0.80
 """Material ratios that bound peak, core and valley volumes [-]."""
-EXTREME_RATIO, MIDDLE_RATIO = 0.025, 0.5
+_EXTREME_RATIO, _MIDDLE_RATIO = 0.025, 0.5
 """Material ratios of the extreme peak height Sxp [-]."""
 _ROUNDING = 1e-12
 """Heights closer than this share of their range are equal [-]."""
@@ -85,7 +85,7 @@ def core_parameters(curve: MaterialRatio) -> dict[str, float]:
 def _equivalent_line(heights: FloatArray) -> tuple[float, float]:
     """Return slope [m per unit ratio] and height at the ratio 0 [m]."""
     points = heights.size
-    window = max(2, round(CENTRAL_SHARE * points))
+    window = max(2, round(_CENTRAL_SHARE * points))
     fall = heights[: points - window + 1] - heights[window - 1 :]
     start = int(np.argmin(fall))
     central = heights[start : start + window]
@@ -104,16 +104,16 @@ def volume_parameters(curve: MaterialRatio) -> dict[str, float]:
     Source:
         ISO 25178-2:2021, 4.6, with the ratios 10 % and 80 %, 2.5 % and 50 %.
     """
-    high, low = curve.height_at(PEAK_RATIO), curve.height_at(VALLEY_RATIO)
-    to_high, to_low = curve.area_above(PEAK_RATIO), curve.area_above(VALLEY_RATIO)
-    peaks = to_high - PEAK_RATIO * high
-    material = to_low - VALLEY_RATIO * low
-    valleys = (1 - VALLEY_RATIO) * low - (float(curve.heights.mean()) - to_low)
-    void = (1 - PEAK_RATIO) * high - (float(curve.heights.mean()) - to_high)
+    high, low = curve.height_at(_PEAK_RATIO), curve.height_at(_VALLEY_RATIO)
+    to_high, to_low = curve.area_above(_PEAK_RATIO), curve.area_above(_VALLEY_RATIO)
+    peaks = to_high - _PEAK_RATIO * high
+    material = to_low - _VALLEY_RATIO * low
+    valleys = (1 - _VALLEY_RATIO) * low - (float(curve.heights.mean()) - to_low)
+    void = (1 - _PEAK_RATIO) * high - (float(curve.heights.mean()) - to_high)
     return {
         "Vmp": peaks,
         "Vmc": material - peaks,
         "Vvc": void - valleys,
         "Vvv": valleys,
-        "Sxp": curve.height_at(EXTREME_RATIO) - curve.height_at(MIDDLE_RATIO),
+        "Sxp": curve.height_at(_EXTREME_RATIO) - curve.height_at(_MIDDLE_RATIO),
     }

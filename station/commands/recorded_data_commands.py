@@ -11,12 +11,8 @@ from jointbench.station.commands.shared_options.heights_options import (
     Directions,
     Filter,
     Form,
-    Iso,
     Outliers,
     Pool,
-    Robust,
-    ScaleErrors,
-    SettingClassName,
     StructureMapFile,
     WaveRatio,
 )
@@ -48,6 +44,12 @@ from jointbench.station.commands.shared_options.output_options import (
     Results,
     SessionOut,
     Universal,
+)
+from jointbench.station.commands.shared_options.texture_options import (
+    Iso,
+    Robust,
+    ScaleErrors,
+    SettingClassName,
 )
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Standard parameters in words, as rows of a table and as plain data."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from jointbench.signal.roughness.parameter_names import (
@@ -8,6 +10,7 @@ from jointbench.signal.roughness.parameter_names import (
     PROFILE_PARAMETERS,
     ParameterName,
 )
+from jointbench.signal.roughness.pooled_texture import pooled_texture
 from jointbench.signal.roughness.setting_classes import SECTIONS
 from jointbench.signal.roughness.texture_records import TextureSettings
 from jointbench.signal.roughness.uncertain_parameters import (
@@ -34,10 +37,10 @@ def parameter_names(measured: MeasuredTexture) -> tuple[ParameterName, ...]:
 def title_words(measured: MeasuredTexture) -> str:
     """Return the title of the table of one surface."""
     standard = "ISO 25178-2" if measured.texture.heights.ndim == 2 else "ISO 21920-2"
-    return f"{measured.surface}: roughness by {standard}, {settings_words(measured)}"
+    return f"{measured.surface}: roughness by {standard}, {_settings_words(measured)}"
 
 
-def settings_words(measured: MeasuredTexture) -> str:
+def _settings_words(measured: MeasuredTexture) -> str:
     """Return nesting indices, form and evaluation length in words."""
     texture = measured.texture
     settings = texture.settings
@@ -72,10 +75,22 @@ def parameter_rows(measured: MeasuredTexture) -> list[tuple[str, ...]]:
     return [_row(measured.named(one.name), one) for one in parameter_names(measured)]
 
 
+def pooled_rows(several: Sequence[MeasuredTexture]) -> list[tuple[str, ...]]:
+    """Return one row for each mean parameter of several measurements."""
+    values = {one.name: one for one in pooled_texture(several)}
+    return [_row(values[one.name], one) for one in parameter_names(several[0])]
+
+
+def pooled_json(several: Sequence[MeasuredTexture]) -> list[dict[str, object]]:
+    """Return the mean parameters of several measurements as plain data."""
+    values = {one.name: one for one in pooled_texture(several)}
+    return [_value_json(values[one.name], one) for one in parameter_names(several[0])]
+
+
 def _row(value: TextureValue, name: ParameterName) -> tuple[str, ...]:
     if value.value is None or value.interval is None:
         return (name.name, "not defined", "-", "-", "-")
-    scale, unit = display_unit(value, name)
+    scale, unit = _display_unit(value, name)
     low, high = value.interval
     digits = _digits(value.uncertainty)
     bias = "-"
@@ -95,7 +110,7 @@ def _digits(uncertainty: float) -> int:
     return 4 if uncertainty else 6
 
 
-def display_unit(value: TextureValue, name: ParameterName) -> tuple[float, str]:
+def _display_unit(value: TextureValue, name: ParameterName) -> tuple[float, str]:
     """Return the factor and the unit in which a parameter is shown."""
     if name.name in _PERCENT:
         return 100.0, "%"
@@ -143,7 +158,7 @@ def answer_json(answer: TextureAnswer) -> dict[str, object]:
         "standard": "ISO 25178-2" if texture.heights.ndim == 2 else "ISO 21920-2",
         "reason": answer.reason,
         "remarks": list(answer.remarks),
-        "settings": settings_json(texture.settings),
+        "settings": _settings_json(texture.settings),
         "sections": texture.sections,
         "evaluation_m": [
             n * d for n, d in zip(texture.heights.shape, texture.spacing, strict=True)
@@ -157,7 +172,7 @@ def answer_json(answer: TextureAnswer) -> dict[str, object]:
     }
 
 
-def settings_json(settings: TextureSettings) -> dict[str, object]:
+def _settings_json(settings: TextureSettings) -> dict[str, object]:
     """Return nesting indices and form as plain data."""
     return {
         "setting_class": settings.setting_class or None,

@@ -96,7 +96,7 @@ def test_planes_of_maps_with_gaps_stay_planes():
 
 
 def test_the_robust_filter_passes_below_grooves():
-    """Deep grooves pull the linear filter down, not the robust one."""
+    """Deep grooves lower the linear filter, not the robust one."""
     heights = 0.01 * np.sin(2 * np.pi * PLACE / 50e-6)
     heights[np.abs(np.arange(POINTS) % 400 - 200) < 20] -= 1.0
     valid = np.ones(POINTS, dtype=bool)

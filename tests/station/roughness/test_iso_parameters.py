@@ -99,7 +99,7 @@ def test_the_command_shows_and_writes_them(tmp_path, capsys):
     assert "roughness by ISO 21920-2" in capsys.readouterr().out
     texture = json.loads(target.read_text())["files"][0]["texture"]
     assert texture["standard"] == "ISO 21920-2"
-    assert texture["sections"] == 5
+    assert texture["sections"] == 2
 
 
 @pytest.mark.parametrize(
