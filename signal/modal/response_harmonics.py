@@ -7,7 +7,7 @@ or three times as high, one to three times as fast, and far weaker; higher harmo
 sums of several modes make further weak peaks. Hits of several levels distinguish them
 from modes: such a peak changes with the level by as much as it is high. Without levels,
 place, decay and size alone may be chance: a peak with all three is left out only where
-the lines do not determine its damping; else it stays and a remark states what it may be.
+the lines do not determine its damping; else it stays, with a remark on what it may be.
 """
 
 from collections.abc import Sequence
