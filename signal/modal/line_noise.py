@@ -108,7 +108,7 @@ def local_residual(residual: ComplexArray) -> FloatArray:
 
 def local_size(lines: FrfLines) -> int:
     """Return how many real values `local_residual` averages, over all FRFs."""
-    return 2 * lines.response.shape[0] * min(_LOCAL_LINES, lines.laplace.size)
+    return int(2 * lines.response.shape[0] * min(_LOCAL_LINES, lines.laplace.size))
 
 
 def model_error(

@@ -12,6 +12,7 @@ the lines do not determine its damping; else it stays, with a remark on what it 
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -208,20 +209,10 @@ def _without(model: ModalModel, out: Sequence[int]) -> ModalModel:
         return model
     keep: BoolArray = np.ones(model.natural_frequency.size, bool)
     keep[list(out)] = False
+    rows: dict[str, Any] = {
+        field.name: getattr(model, field.name)[keep]
+        for field in fields(model)
+        if isinstance(getattr(model, field.name), np.ndarray)
+    }
     done = step("leave_out_harmonics", modes=len(out))
-    return replace(
-        model,
-        provenance=(*model.provenance, done),
-        **{name: _rows(getattr(model, name), keep) for name in _PER_MODE},
-    )
-
-
-_PER_MODE = tuple(
-    field.name
-    for field in fields(ModalModel)
-    if field.name not in ("outputs", "inputs", "provenance")
-)
-
-
-def _rows(values: FloatArray, keep: BoolArray) -> FloatArray:
-    return np.asarray(values[keep])
+    return replace(model, provenance=(*model.provenance, done), **rows)
