@@ -36,6 +36,7 @@ from jointbench.station.pipeline.surface_stages import (
     with_remedy,
     with_texture,
 )
+from jointbench.station.roughness.reader_words import shown_readers
 from jointbench.station.roughness.texture_screen import measured_of, show_textures
 from jointbench.station.roughness.texture_words import pooled_json
 from jointbench.station.screen.band_limited_words import (
@@ -63,6 +64,7 @@ def run_surface(
         BadData: a file cannot be read, or a surface is too small.
     """
     check_outputs(files, [json_target, options.structure_map])
+    readers = shown_readers(files, options.texture is not None, console(json_target))
     read = read_surfaces(files, columns=columns)
     given = [surface for _, surface in read]
     require_suited(given, options)
@@ -76,7 +78,9 @@ def run_surface(
         if options.structure_map is not None:
             write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
-        results.append({"file": str(path)} | surface_json(chain))
+        results.append(
+            {"file": str(path)} | surface_json(chain) | readers.get(path, {})
+        )
     pooled = _pooled(given, chains, options.treatment) if options.pool else None
     show_surfaces(chains, json_target, pooled)
     found: dict[str, object] = {"files": results}
