@@ -75,9 +75,8 @@ def main() -> None:
     print(f"| jointbench, {asked.side} x {asked.side} | {spent[0]:.2f} s |")
     print(f"| surfalize | {spent[1]:.2f} s |")
     print(f"| ratio | {spent[0] / spent[1]:.2f} |\n")
-    print(
-        "| parameter | jointbench | surfalize | relative difference |\n|---|---|---|---|"
-    )
+    print("| parameter | jointbench | surfalize | relative difference |")
+    print("|---|---|---|---|")
     for name in SHARED:
         one = (mine[OURS.get(name, name)] or np.nan) * SCALE.get(name, 1e6)
         apart = one / other[name] - 1 if other[name] else one

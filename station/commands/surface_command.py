@@ -39,6 +39,9 @@ from jointbench.station.pipeline.surface_stages import (
 from jointbench.station.roughness.reader_words import shown_readers
 from jointbench.station.roughness.texture_screen import measured_of, show_textures
 from jointbench.station.roughness.texture_words import pooled_json
+from jointbench.station.roughness.used_by_contact import COLUMNS as USED_COLUMNS
+from jointbench.station.roughness.used_by_contact import TITLE as USED_TITLE
+from jointbench.station.roughness.used_by_contact import contact_rows
 from jointbench.station.screen.band_limited_words import (
     COLUMNS,
     TITLE,
@@ -113,6 +116,11 @@ def show_surfaces(
             screen.print(f"  {chain.surface.name}: {line}", markup=False)
     _show_bands(screen, chains, pooled)
     show_textures(screen, chains, pool=pooled is not None)
+    for chain in chains:
+        if chain.texture is not None:
+            taken = contact_rows(chain.fit, chain.band, chain.texture)
+            title = f"{chain.surface.name}: {USED_TITLE}"
+            screen.print(table(title, USED_COLUMNS, taken, words={0, 2}))
     if pooled is not None:
         for line in (pooled.fit.reason, *pooled.beside.lines):
             screen.print(f"  {pooled.structure.name}: {line}", markup=False)

@@ -7,6 +7,7 @@ factor in which they differ is an error of one of them.
 
 import importlib.util
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ _ALIKE = 0.999
 _MICROMETRE = 1e-6
 _MOST_SHIFT = 64
 """Points by which a reader may begin too early or too late in a file."""
-_TURNS = {
+_TURNS: dict[str, Callable[[FloatArray], FloatArray]] = {
     "upright": lambda z: z,
     "upside down": lambda z: z[::-1],
     "mirrored": lambda z: z[:, ::-1],
