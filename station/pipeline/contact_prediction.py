@@ -11,6 +11,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.records.surfaces import Surface
 from jointbench.analysis.contact.contact_case import ContactCase
 from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.draws import StiffnessInterval
@@ -32,6 +33,12 @@ from jointbench.analysis.contact.uncertainty import (
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.surface.structure_function import StructureFunction, combine
 from jointbench.signal.surface.surface_treatment import outside_filters
+from jointbench.station.contact.measured_prediction import (
+    MeasuredJoint,
+    MeasuredPrediction,
+    measured_prediction,
+)
+from jointbench.station.contact.measured_words import measured_json
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.pipeline.contact_request import ContactRequest
 from jointbench.station.pipeline.roughness_words import contact_surface_json
@@ -118,19 +125,7 @@ def surface_of(
 ) -> ContactSurface:
     """Return the surface from numbers or from files of one or two surfaces."""
     if files and dimension is None and roughness is None:
-        found = read_surfaces(files, columns=columns)
-        if len(found) > FACES:
-            raise UsageError(f"{len(found)} surfaces for one joint; give one or two")
-        faces = found if len(found) == FACES else found * FACES
-        chains = [analyse_surface(s) for _, s in faces]
-        said = [one for chain in chains for one in chain_cautions(chain)]
-        try:
-            whole = equivalent_surface(
-                [outside_filters(c.structure, c.surface) for c in chains]
-            )
-        except BadData as error:  # what is odd about the heights may be the cause
-            raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
-        return replace(whole, cautions=tuple(dict.fromkeys(said)))
+        return fractal_surface(contact_faces(files, columns))
     if dimension is None or roughness is None or files:
         raise UsageError(
             "give either --dimension and --roughness, or --surface once (both "
@@ -143,6 +138,76 @@ def surface_of(
         log_roughness=parse_value(roughness_sd, "ratio"),
     )
     return replace(plain, spread=spread)
+
+
+def contact_faces(files: Sequence[Path], columns: str | None) -> tuple[Surface, ...]:
+    """Return the measured surfaces of a joint: two, or one that stands for both.
+
+    Raises:
+        BadData: a file cannot be read.
+        UsageError: the files hold more than two surfaces.
+    """
+    found = read_surfaces(files, columns=columns)
+    if len(found) > FACES:
+        raise UsageError(f"{len(found)} surfaces for one joint; give one or two")
+    return tuple(surface for _, surface in found)
+
+
+def fractal_surface(given: Sequence[Surface]) -> ContactSurface:
+    """Return D and G of the equivalent surface of one or two measured ones.
+
+    Raises:
+        BadData: they have no scaling range; the message holds what is odd about them.
+    """
+    faces = given if len(given) == FACES else [given[0]] * FACES
+    chains = [analyse_surface(one) for one in faces]
+    said = [one for chain in chains for one in chain_cautions(chain)]
+    try:
+        whole = equivalent_surface(
+            [outside_filters(c.structure, c.surface) for c in chains]
+        )
+    except BadData as error:  # what is odd about the heights may be the cause
+        raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
+    return replace(whole, cautions=tuple(dict.fromkeys(said)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FacesPrediction:
+    """What follows from the measured surfaces of a joint.
+
+    Attributes:
+        surface: D and G of the equivalent surface; None without a scaling range.
+        measured: the laws of their spectra; None without an apparent area or preload.
+    """
+
+    surface: ContactSurface | None
+    measured: MeasuredPrediction | None
+
+
+def predict_faces(faces: Sequence[Surface], request: ContactRequest) -> FacesPrediction:
+    """Fit the surfaces of a joint and predict by the laws of measured spectra.
+
+    Raises:
+        BadData: they have no scaling range, and an area or a preload for the other
+            laws is missing.
+    """
+    area = request.conditions.nominal_area
+    known = area is not None and bool(request.preloads)
+    fractal: ContactSurface | str
+    try:
+        fractal = fractal_surface(faces)
+    except BadData as error:
+        if not known:
+            raise BadData(
+                f"{error}; give --nominal-area with --load or --torque for the laws of "
+                "the measured spectrum"
+            ) from error
+        fractal = str(error)
+    surface = None if isinstance(fractal, str) else fractal
+    if area is None or not known:
+        return FacesPrediction(surface, None)
+    joint = MeasuredJoint(area, request.conditions, request.preloads, request.models)
+    return FacesPrediction(surface, measured_prediction(faces, joint, fractal))
 
 
 def swept(
@@ -172,12 +237,15 @@ def _of_a_line(dimension: float) -> float:
 
 
 def contact_json(
-    points: Sequence[ContactPoint], surface: ContactSurface
+    points: Sequence[ContactPoint],
+    surface: ContactSurface | None,
+    measured: MeasuredPrediction | None = None,
 ) -> dict[str, object]:
     """Return what the contract promises of ``contact``, and more."""
     return {
         **contact_surface_json(surface),
         "models": [_point_json(point) for point in points],
+        "measured": None if measured is None else measured_json(measured),
     }
 
 

@@ -92,6 +92,7 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         tangential_load=parse_value(given.tangential_load, "force"),
         friction=given.friction,
         nominal_area=given.nominal_area,
+        modulus_sd=material.effective_modulus * parse_value(given.modulus_sd, "ratio"),
     )
     return ContactRequest(
         models,
