@@ -66,7 +66,7 @@ class MeasuredPrediction:
         at: each law at the preloads, in ascending order.
         curve: each law over a range around them.
         coarser: the laws of the spectrum at the preloads without the shortest octave.
-        no_fractal: why no fractal law is shown; None where one is.
+        no_fractal: why no fractal law is shown; None where one is or none is asked.
         profiles: whether a surface is a profile, whose lay is unknown.
     """
 
@@ -84,14 +84,15 @@ class MeasuredPrediction:
 def measured_prediction(
     surfaces: Sequence[Surface],
     joint: MeasuredJoint,
-    fractal: ContactSurface | str,
+    fractal: ContactSurface | str | None,
 ) -> MeasuredPrediction:
     """Predict the stiffness of a joint from the spectra of its surfaces.
 
     Args:
         surfaces: of both sides, or one that stands for both.
         joint: area, materials, preloads.
-        fractal: D and G of the equivalent surface, or the reason for none.
+        fractal: D and G of the equivalent surface, the reason for none, or None where
+            no fractal law is asked.
 
     Raises:
         BadData: a surface shows no wavelength, or has too few points.
@@ -107,7 +108,7 @@ def measured_prediction(
         predict_measured(case, wide),
     )
     reason = fractal if isinstance(fractal, str) else None
-    if not isinstance(fractal, str):
+    if isinstance(fractal, ContactSurface):
         try:
             laws += _fractal_laws(case, joint, fractal, pressure)
             curve += _fractal_laws(case, joint, fractal, wide)

@@ -34,7 +34,7 @@ def measured_section(found: MeasuredPrediction) -> Section:
     """Return the section of a report on the laws of measured surfaces."""
     rows = tuple(law_rows(found))
     items: list[Item] = [
-        Plot("measured-laws", _CAPTION, law_figure(found), height=520),
+        Plot("law-curves", _CAPTION, law_figure(found), height=520),
         DataTable(law_title(found), COLUMNS, rows, frozenset({"no"})),
     ]
     items += [Text(said) for said in (*surface_lines(found), *verdict_lines(found))]

@@ -23,8 +23,8 @@ COLUMNS = (
 )
 _PREFERRED = ("persson", "bush_gibson_thomas", "greenwood_williamson", "yovanovich")
 REMEDY = (
-    "solve the measured heights themselves, which no law of random heights needs: "
-    "'jointbench pressure-map'"
+    "the reasons below name what is outside: a longer measurement, a larger apparent "
+    "area or a higher load may bring it inside"
 )
 
 
@@ -141,16 +141,17 @@ def _at(found: MeasuredPrediction, place: int) -> Iterator[str]:
 
 
 def _ends(curves: Sequence[LawCurve], place: int) -> tuple[LawCurve, LawCurve]:
+    # A fractal law has no stiffness where every contact is plastic.
+    known = [one for one in curves if one.stiffness[place] > 0]
     return (
-        min(curves, key=lambda one: one.stiffness[place]),
-        max(curves, key=lambda one: one.stiffness[place]),
+        min(known, key=lambda one: one.stiffness[place]),
+        max(known, key=lambda one: one.stiffness[place]),
     )
 
 
 def _apart(curves: Sequence[LawCurve], place: int) -> float:
     least, most = _ends(curves, place)
-    low = float(least.stiffness[place])
-    return float(most.stiffness[place]) / low if low > 0 else np.inf
+    return float(most.stiffness[place] / least.stiffness[place])
 
 
 def _reasons(found: MeasuredPrediction) -> list[str]:
@@ -158,9 +159,9 @@ def _reasons(found: MeasuredPrediction) -> list[str]:
     lines = []
     for curve in found.at:
         places: dict[str, list[int]] = {}
-        for j, said in enumerate(curve.outside):
-            if said:
-                places.setdefault("; ".join(said), []).append(j)
+        for j, why in enumerate(curve.outside):
+            if why:
+                places.setdefault("; ".join(why), []).append(j)
         for said, at in places.items():
             whole = len(at) == len(found.preloads)
             loads = ", ".join(f"{found.preloads[j]:.6g} N" for j in at)

@@ -2,7 +2,7 @@
 """``jointbench contact``: a rough joint's stiffness from surface, material, preload."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
@@ -38,7 +38,6 @@ from jointbench.station.contact.measured_prediction import (
     MeasuredPrediction,
     measured_prediction,
 )
-from jointbench.station.contact.measured_words import measured_json
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.pipeline.contact_request import ContactRequest
 from jointbench.station.pipeline.roughness_words import contact_surface_json
@@ -239,13 +238,19 @@ def _of_a_line(dimension: float) -> float:
 def contact_json(
     points: Sequence[ContactPoint],
     surface: ContactSurface | None,
-    measured: MeasuredPrediction | None = None,
+    measured: Mapping[str, object] | None = None,
 ) -> dict[str, object]:
-    """Return what the contract promises of ``contact``, and more."""
+    """Return what the contract promises of ``contact``, and more.
+
+    Args:
+        points: of fractal laws.
+        surface: that they take; None without a scaling range.
+        measured: laws of measured surfaces, see `measured_json`.
+    """
     return {
         **contact_surface_json(surface),
         "models": [_point_json(point) for point in points],
-        "measured": None if measured is None else measured_json(measured),
+        "measured": measured,
     }
 
 

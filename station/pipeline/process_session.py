@@ -25,6 +25,7 @@ from jointbench.station.pipeline.joint_stages import (
     contact_stage,
     gap_stage,
     joint_stage,
+    measured_stage,
     surface_stages,
 )
 from jointbench.station.pipeline.judge_again import Hits, VerdictChange, verdict_changes
@@ -218,13 +219,22 @@ def _contact(
         why = "no preload in the recipe or the session"
         remarks.lines.append(f"No contact prediction: {why}")
         return None
-    given = part.model_dump() | {"preload": preload}
+    given = part.model_dump(exclude={"area"}) | {"preload": preload}
     # Read as a table its numbers would need units again; they were checked there.
     table = ContactTable.model_construct(link="joint", **given)
     found = remarks.attempt(
         "contact prediction", lambda: contact_stage(surfaces, table, run)
     )
-    return None if found is None else contact_json([found.at], found.surface)
+    laws = None
+    if part.area is not None:
+        area = part.area
+        laws = remarks.attempt(
+            "laws of measured surfaces",
+            lambda: measured_stage(surfaces, table, area, run),
+        )
+    if found is None:
+        return None if laws is None else contact_json((), None, laws)
+    return contact_json([found.at], found.surface, laws)
 
 
 def _joint(

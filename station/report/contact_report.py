@@ -16,6 +16,7 @@ from jointbench.station.contact.measured_words import COLUMNS as LAW_COLUMNS
 from jointbench.station.contact.measured_words import (
     law_rows,
     law_title,
+    measured_json,
     surface_lines,
     verdict_lines,
 )
@@ -101,7 +102,8 @@ def run_contact(
     if given.plot is not None:
         swept_rows = None if sweep is None else (sweep, rows)
         write_report(contact_report(points, surface, swept_rows, measured), given.plot)
-    content = contact_json(points, surface, measured)
+    laws = None if measured is None else measured_json(measured)
+    content = contact_json(points, surface, laws)
     if sweep is not None:
         content["sweep"] = sweep_json(sweep, rows)
     write_json(given.json, content)

@@ -19,6 +19,9 @@ _BINS = 240
 """Wavenumbers of a modelled spectrum [-]."""
 _RINGS = 48
 """Wavenumbers of a measured one: at most as many as a line has bins [-]."""
+_OBLIQUE = 2.0
+"""Highest wavenumber of the rings over that of the line [-]: a line sees shorter waves
+where they cross it at an angle. They are fitted, and left out."""
 _STRETCH = 9
 """Rings over which draws have the median of the estimate [-]: about two octaves."""
 _BELOW = 0.1
@@ -176,7 +179,9 @@ def _measured(line: LineDensity) -> IsotropicSpectrum:
     """
     q, count = line.wavenumber, line.count
     rings = min(_RINGS, q.size)
-    edges = np.geomspace(q[0], q[-1], rings + 1)
+    step = (q[-1] / q[0]) ** (1 / rings)
+    beyond = int(np.ceil(np.log(_OBLIQUE) / np.log(step)))
+    edges = q[0] * step ** np.arange(rings + beyond + 1)
     ring = np.sqrt(edges[1:] * edges[:-1])
     bounds = np.concatenate([[q[0]], np.sqrt(q[1:] * q[:-1]), [q[-1]]])
     share = _ring_share(edges, bounds)
@@ -190,7 +195,9 @@ def _measured(line: LineDensity) -> IsotropicSpectrum:
     seen = np.concatenate([np.ones((1, q.size)), drawn])
     found = _centred(np.array([nnls(design, root * one)[0] for one in seen]))
     hurst = np.full(DRAWS + 1, np.nan)
-    return IsotropicSpectrum(ring, found, hurst, saturated=False, modelled=False)
+    return IsotropicSpectrum(
+        ring[:rings], found[:, :rings], hurst, saturated=False, modelled=False
+    )
 
 
 def _centred(variance: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 """Contact of summits that do not interact, by the moments of the spectrum."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -16,6 +17,9 @@ _SEPARATION = np.linspace(-2.0, 8.0, 81)
 _LONGEST_CURVATURE = 6.5
 """Largest mean curvature of a summit, in standard deviations of it [-]."""
 _NODES = 24
+_SPREADS = np.linspace(0.1, 0.999, 33)
+"""Standard deviations of the height of a summit of given curvature, in rms heights,
+at which its sums are tabulated [-]; alpha of 1.515 to 750."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +58,8 @@ class LineMoments:
     @property
     def summit_height(self) -> FloatArray:
         """Standard deviation of the heights of summits [m]."""
-        return np.sqrt((1 - 0.8968 / self.breadth) * self.height)
+        sd: FloatArray = np.sqrt((1 - 0.8968 / self.breadth) * self.height)
+        return sd
 
 
 def line_moments(surface: IsotropicSpectrum) -> LineMoments:
@@ -144,8 +149,7 @@ def bush_gibson_thomas(
     root = np.sqrt(moments.height)
     bend = np.sqrt(moments.curvature)
     density = moments.curvature / moments.slope
-    sums = np.array([_summits(alpha) for alpha in moments.breadth])
-    load, slope, area, count = np.moveaxis(sums, 1, 0)
+    load, slope, area, count = _sums_of(moments.breadth)
     unit = 4 / 3 * modulus * density * root**1.5 / np.sqrt(bend)
     wanted = np.log(pressure / unit[:, None])
     place = np.array(
@@ -166,6 +170,24 @@ def bush_gibson_thomas(
         real_area=(np.pi * density * root / bend)[:, None] * at(area),
         contacts=density[:, None] * at(count),
     )
+
+
+def _sums_of(breadth: FloatArray) -> tuple[FloatArray, ...]:
+    """Return the four sums of `_summits`, each of shape (n_draws, n_separations)."""
+    tables = _summit_tables()
+    place = np.sqrt(np.clip(1 - 1.5 / breadth, _SPREADS[0], _SPREADS[-1]))
+    right = np.clip(np.searchsorted(_SPREADS, place), 1, _SPREADS.size - 1)
+    part = (place - _SPREADS[right - 1]) / (_SPREADS[right] - _SPREADS[right - 1])
+    mixed = (1 - part)[:, None, None] * tables[right - 1]
+    mixed += part[:, None, None] * tables[right]
+    load, slope, area, count = np.moveaxis(np.exp(mixed), 1, 0)
+    return load, slope, area, count
+
+
+@cache
+def _summit_tables() -> FloatArray:
+    """Return the logarithms of the sums at each spread, shape (n, 4, n_separations)."""
+    return np.log([_summits(1.5 / (1 - spread**2)) for spread in _SPREADS])
 
 
 def _summits(breadth: float) -> FloatArray:
