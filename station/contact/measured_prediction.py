@@ -12,7 +12,7 @@ from jointbench.acquisition.records.surfaces import Profile, Surface
 from jointbench.analysis.contact.contact_case import ContactCase, ContactConditions
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.spectral.fractal_reference import fractal_curve
-from jointbench.analysis.contact.spectral.height_facts import (
+from jointbench.analysis.contact.spectral.height_distribution import (
     facts_of_both,
     height_facts,
 )

@@ -33,11 +33,6 @@ from jointbench.analysis.contact.uncertainty import (
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.surface.structure_function import StructureFunction, combine
 from jointbench.signal.surface.surface_treatment import outside_filters
-from jointbench.station.contact.measured_prediction import (
-    MeasuredJoint,
-    MeasuredPrediction,
-    measured_prediction,
-)
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.pipeline.contact_request import ContactRequest
 from jointbench.station.pipeline.roughness_words import contact_surface_json
@@ -124,7 +119,8 @@ def surface_of(
 ) -> ContactSurface:
     """Return the surface from numbers or from files of one or two surfaces."""
     if files and dimension is None and roughness is None:
-        return fractal_surface(contact_faces(files, columns))
+        found = read_surfaces(files, columns=columns)
+        return fractal_surface([surface for _, surface in found])
     if dimension is None or roughness is None or files:
         raise UsageError(
             "give either --dimension and --roughness, or --surface once (both "
@@ -139,25 +135,15 @@ def surface_of(
     return replace(plain, spread=spread)
 
 
-def contact_faces(files: Sequence[Path], columns: str | None) -> tuple[Surface, ...]:
-    """Return the measured surfaces of a joint: two, or one that stands for both.
-
-    Raises:
-        BadData: a file cannot be read.
-        UsageError: the files hold more than two surfaces.
-    """
-    found = read_surfaces(files, columns=columns)
-    if len(found) > FACES:
-        raise UsageError(f"{len(found)} surfaces for one joint; give one or two")
-    return tuple(surface for _, surface in found)
-
-
 def fractal_surface(given: Sequence[Surface]) -> ContactSurface:
     """Return D and G of the equivalent surface of one or two measured ones.
 
     Raises:
         BadData: they have no scaling range; the message holds what is odd about them.
+        UsageError: there are more than two.
     """
+    if len(given) > FACES:
+        raise UsageError(f"{len(given)} surfaces for one joint; give one or two")
     faces = given if len(given) == FACES else [given[0]] * FACES
     chains = [analyse_surface(one) for one in faces]
     said = [one for chain in chains for one in chain_cautions(chain)]
@@ -168,61 +154,6 @@ def fractal_surface(given: Sequence[Surface]) -> ContactSurface:
     except BadData as error:  # what is odd about the heights may be the cause
         raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
     return replace(whole, cautions=tuple(dict.fromkeys(said)))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FacesPrediction:
-    """What follows from the measured surfaces of a joint.
-
-    Attributes:
-        surface: D and G of the equivalent surface; None without a scaling range.
-        measured: the laws of their spectra; None without an apparent area or preload.
-    """
-
-    surface: ContactSurface | None
-    measured: MeasuredPrediction | None
-
-
-def predict_faces(faces: Sequence[Surface], request: ContactRequest) -> FacesPrediction:
-    """Fit the surfaces of a joint and predict by the laws of measured spectra.
-
-    Raises:
-        BadData: they have no scaling range, and an area or a preload for the other
-            laws is missing.
-    """
-    area = request.conditions.nominal_area
-    known = area is not None and bool(request.preloads)
-    fractal: ContactSurface | str
-    try:
-        fractal = fractal_surface(faces)
-    except BadData as error:
-        if not known:
-            raise BadData(
-                f"{error}; give --nominal-area with --load or --torque for the laws of "
-                "the measured spectrum"
-            ) from error
-        fractal = str(error)
-    surface = None if isinstance(fractal, str) else fractal
-    if area is None or not known:
-        return FacesPrediction(surface, None)
-    joint = MeasuredJoint(area, request.conditions, request.preloads, request.models)
-    return FacesPrediction(surface, measured_prediction(faces, joint, fractal))
-
-
-def swept(
-    request: ContactRequest, surface: ContactSurface, name: str, value: float
-) -> tuple[ContactRequest, ContactSurface]:
-    """Return request and surface with one swept input at `value`, spreads left out."""
-    plain = ContactSurface(surface.dimension, surface.roughness)
-    conditions = replace(request.conditions, hardness_sd=0.0, friction_factor_sd=0.0)
-    bare = replace(request, conditions=conditions)
-    if name == "load":
-        return replace(bare, preloads=(Preload(value, 0.0),)), plain
-    if bare.preloads:
-        bare = replace(bare, preloads=(Preload(bare.preloads[0].value, 0.0),))
-    if name == "dimension":
-        return bare, replace(plain, dimension=value)
-    return bare, replace(plain, roughness=value)
 
 
 def _of_a_line(dimension: float) -> float:

@@ -5,7 +5,6 @@
 
     structure <- heights                surface <- structure
     contact   <- structures, material   joint   <- modes, the model
-    measured_contact <- heights, material
     gap       <- hits, samples, the model
 """
 
@@ -42,11 +41,9 @@ from jointbench.signal.surface.surface_treatment import (
     treated,
     treated_structure,
 )
-from jointbench.station.contact.measured_words import measured_json
 from jointbench.station.pipeline.joint_comparison import (
     ContactPrediction,
     predict_joint,
-    predict_measured_joint,
 )
 from jointbench.station.pipeline.link_stage import identify_joint
 from jointbench.station.pipeline.recordings_by_preload import at_words
@@ -132,27 +129,6 @@ def contact_stage(
         run.stages.key("contact", given, run.stages.digest(structures)),
         ContactPrediction,
         lambda: predict_joint(structures, table),
-    )
-
-
-def measured_stage(
-    surfaces: Sequence[SurfaceChain], table: ContactTable, area: float, run: StageRun
-) -> Page:
-    """Predict the joint by the laws of measured surfaces, as ``contact`` does.
-
-    Args:
-        surfaces: of both sides, or one that stands for both.
-        table: material and preload.
-        area: apparent [m^2].
-        run: store and source.
-    """
-    heights = tuple(one.surface for one in surfaces)
-    given = [table.model_dump(mode="json", exclude={"link", "model"}), area]
-    return run.stages.run(
-        "measured_contact",
-        run.stages.key("measured_contact", given, run.stages.digest(heights)),
-        Page,
-        lambda: measured_json(predict_measured_joint(heights, table, area)),
     )
 
 

@@ -20,21 +20,21 @@ from jointbench.station.contact.measured_words import (
     surface_lines,
     verdict_lines,
 )
+from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.joints.measured_faces import predict_faces
 from jointbench.station.pipeline.contact_options import ContactOptions
 from jointbench.station.pipeline.contact_prediction import (
     ContactPoint,
-    contact_faces,
     contact_json,
-    predict_faces,
     predict_request,
     surface_of,
-    swept,
 )
 from jointbench.station.pipeline.contact_request import (
     ContactRequest,
     Sweep,
     parse_sweep,
+    swept,
 )
 from jointbench.station.pipeline.roughness_words import contact_surface_words
 from jointbench.station.screen.figures import axis, figure
@@ -117,7 +117,8 @@ def _surface(
     numbers = given.dimension is not None or given.roughness is not None
     if given.surface and not numbers:
         with working("fitting the surfaces"):
-            found = predict_faces(contact_faces(given.surface, given.columns), request)
+            read = read_surfaces(given.surface, columns=given.columns)
+            found = predict_faces([surface for _, surface in read], request)
         return found.surface, found.measured
     surface = surface_of(
         given.dimension,

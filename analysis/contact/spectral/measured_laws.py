@@ -10,29 +10,12 @@ from scipy.special import ndtri
 
 from jointbench.acquisition.basics.array_checks import require_positive
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.contact.spectral.height_facts import HeightFacts
+from jointbench.analysis.contact.spectral.height_distribution import HeightFacts
 from jointbench.analysis.contact.spectral.isotropic_spectrum import (
     DRAWS,
     IsotropicSpectrum,
 )
-from jointbench.analysis.contact.spectral.law_limits import (
-    CONTACT_SCATTER,
-    FEWEST_CONTACTS,
-    FEWEST_HILLS,
-    FINEST_OF_HILL,
-    FINITE_SIZE_CONTACTS,
-    FULL_YIELD,
-    HIGHEST_LOAD,
-    HIGHEST_SUMMIT_LOAD,
-    HILL_SCATTER,
-    LOWEST_SEPARATION,
-    MOST_STIFFENING,
-    PERSSON_SD,
-    PLASTIC,
-    PLASTIC_SD,
-    PLASTIC_SLOPE,
-    SUMMIT_SD,
-)
+from jointbench.analysis.contact.spectral.law_limits import LIMITS
 from jointbench.analysis.contact.spectral.persson import persson_state
 from jointbench.analysis.contact.spectral.summit_laws import (
     LineMoments,
@@ -92,6 +75,11 @@ class MeasuredCase:
     def gradient(self) -> float:
         """Root mean square gradient h' [-]."""
         return float(np.sqrt(self.surface.moment(2)[0]))
+
+    @property
+    def flattening(self) -> float:
+        """E* h', the pressure of nearly full contact [Pa]."""
+        return self.modulus * self.gradient
 
     @property
     def height(self) -> float:
@@ -175,7 +163,7 @@ def predict_measured(
         )
     )
     coarse = case.surface.without_below(
-        float(case.surface.mean_wave()[0]) / FINEST_OF_HILL
+        float(case.surface.mean_wave()[0]) / LIMITS.finest_of_hill
     )
     counted = bush_gibson_thomas(line_moments(coarse), pressure, modulus)
     common = _Common(
@@ -207,19 +195,23 @@ def _persson(common: _Common) -> LawCurve:
     found = persson_state(case.surface, pressure, common.modulus, common.hardness)
     hurst = np.where(np.isnan(case.surface.hurst), _HURST, case.surface.hurst)
     # K ~ F^(1 / (1 + H)) of a single hill; the number of contacts grows with F.
-    few = np.minimum(1.0, common.contacts / FINITE_SIZE_CONTACTS)
+    few = np.minimum(1.0, common.contacts / LIMITS.finite_size_contacts)
     stiffness = found.stiffness * few ** -(hurst / (1 + hurst))[:, None]
     outside = [
         (
             *_of_any_law(common, j),
-            *_above(p / (case.modulus * case.gradient), HIGHEST_LOAD, "p / (E* h')"),
-            *_above(p / case.hardness, FULL_YIELD, "p / H"),
-            *_above(found.stiffening[0, j], MOST_STIFFENING, "stiffening by yielding"),
+            *_above(
+                p / (case.modulus * case.gradient), LIMITS.highest_load, "p / (E* h')"
+            ),
+            *_above(p / case.hardness, LIMITS.full_yield, "p / H"),
+            *_above(
+                found.stiffening[0, j], LIMITS.most_stiffening, "stiffening by yielding"
+            ),
         )
         for j, p in enumerate(pressure)
     ]
     # Half of what yielding adds: its size rests on one published formula.
-    own = np.hypot(PERSSON_SD, 0.5 * np.log(found.stiffening[0]))
+    own = np.hypot(LIMITS.persson_sd, 0.5 * np.log(stiffening))
     low, high = _interval(common, stiffness, own)
     return LawCurve(
         MeasuredLaw.PERSSON,
@@ -245,18 +237,22 @@ def _summits(
         (
             *_of_any_law(common, j),
             *_above(
-                p / (case.modulus * case.gradient), HIGHEST_SUMMIT_LOAD, "p / (E* h')"
+                p / (case.modulus * case.gradient),
+                LIMITS.highest_summit_load,
+                "p / (E* h')",
             ),
             *_below(
                 found.separation[0, j] / case.height,
-                LOWEST_SEPARATION,
+                LIMITS.lowest_separation,
                 "separation / h_rms",
             ),
-            *_above(index, PLASTIC, "plasticity index"),
+            *_above(index, LIMITS.plastic, "plasticity index"),
         )
         for j, p in enumerate(pressure)
     ]
-    low, high = _interval(common, found.stiffness, np.full(pressure.size, SUMMIT_SD))
+    low, high = _interval(
+        common, found.stiffness, np.full(pressure.size, LIMITS.summit_sd)
+    )
     return LawCurve(
         law,
         pressure,
@@ -287,12 +283,12 @@ def _yovanovich(common: _Common) -> LawCurve:
     outside = [
         (
             *_of_any_law(common, j),
-            *_below(plastic, PLASTIC_SLOPE, "E* m / H"),
-            *_above(p / case.hardness, FULL_YIELD, "p / H"),
+            *_below(plastic, LIMITS.plastic_slope, "E* m / H"),
+            *_above(p / case.hardness, LIMITS.full_yield, "p / H"),
         )
         for j, p in enumerate(pressure)
     ]
-    low, high = _interval(common, stiffness, np.full(pressure.size, PLASTIC_SD))
+    low, high = _interval(common, stiffness, np.full(pressure.size, LIMITS.plastic_sd))
     # Both areas are cut off where the plane cuts normal heights.
     area = np.minimum(share[0], 0.5)
     return LawCurve(
@@ -309,12 +305,14 @@ def _yovanovich(common: _Common) -> LawCurve:
 
 def _of_any_law(common: _Common, place: int) -> tuple[str, ...]:
     """Return why no law of many random contacts applies at a pressure."""
-    case = common.case
+    case, contacts = common.case, common.contacts[0, place]
     deviation = case.facts.deviation
     return (
         *(() if deviation is None else (deviation,)),
-        *_below(case.hills, FEWEST_HILLS, "hills in the apparent area"),
-        *_below(common.contacts[0, place], FEWEST_CONTACTS, "summits in contact"),
+        *_below(case.hills, LIMITS.fewest_hills, "hills in the apparent area"),
+        *_below(
+            common.contacts[0, place], LIMITS.fewest_contacts, "summits in contact"
+        ),
     )
 
 
@@ -330,8 +328,8 @@ def _interval(
     common: _Common, stiffness: FloatArray, own: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the 2.5 and 97.5 % points of the stiffness at each pressure."""
-    variance = own**2 + CONTACT_SCATTER / np.maximum(common.contacts[0], 1e-9)
-    variance = variance + HILL_SCATTER / common.case.hills
+    variance = own**2 + LIMITS.contact_scatter / np.maximum(common.contacts[0], 1e-9)
+    variance = variance + LIMITS.hill_scatter / common.case.hills
     # Stiffness follows the load in equal ratios, or more slowly.
     sd = np.hypot(np.minimum(np.sqrt(variance), _WIDEST_SD), common.load_sd)
     random = np.random.default_rng(_SEED)

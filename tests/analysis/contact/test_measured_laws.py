@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from jointbench.analysis.contact.spectral.height_facts import (
+from jointbench.analysis.contact.spectral.height_distribution import (
     HeightFacts,
     facts_of_both,
 )

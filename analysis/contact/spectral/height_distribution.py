@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.records.surfaces import Profile, Surface
-from jointbench.analysis.contact.spectral.law_limits import PEAKED, SKEWED
+from jointbench.analysis.contact.spectral.law_limits import LIMITS
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 from jointbench.signal.surface.levelling import level
 
@@ -34,8 +34,8 @@ class HeightFacts:
         # Each hill gives about two independent heights: a summit and a valley.
         reach = NORMAL_97_5 / np.sqrt(2 * max(self.hills, 0.5))
         for name, value, limit, unit in (
-            ("skewness", self.skewness, SKEWED, 6),
-            ("excess kurtosis", self.kurtosis, PEAKED, 24),
+            ("skewness", self.skewness, LIMITS.skewed, 6),
+            ("excess kurtosis", self.kurtosis, LIMITS.peaked, 24),
         ):
             if abs(value) > limit and abs(value) > reach * np.sqrt(unit):
                 return f"heights have a {name} of {value:.2g}, normal ones 0"
