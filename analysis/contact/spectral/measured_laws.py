@@ -197,6 +197,7 @@ def _persson(common: _Common) -> LawCurve:
     # K ~ F^(1 / (1 + H)) of a single hill; the number of contacts grows with F.
     few = np.minimum(1.0, common.contacts / LIMITS.finite_size_contacts)
     stiffness = found.stiffness * few ** -(hurst / (1 + hurst))[:, None]
+    stiffening = found.stiffening[0]
     outside = [
         (
             *_of_any_law(common, j),
@@ -204,9 +205,7 @@ def _persson(common: _Common) -> LawCurve:
                 p / (case.modulus * case.gradient), LIMITS.highest_load, "p / (E* h')"
             ),
             *_above(p / case.hardness, LIMITS.full_yield, "p / H"),
-            *_above(
-                found.stiffening[0, j], LIMITS.most_stiffening, "stiffening by yielding"
-            ),
+            *_above(stiffening[j], LIMITS.most_stiffening, "stiffening by yielding"),
         )
         for j, p in enumerate(pressure)
     ]
@@ -310,9 +309,7 @@ def _of_any_law(common: _Common, place: int) -> tuple[str, ...]:
     return (
         *(() if deviation is None else (deviation,)),
         *_below(case.hills, LIMITS.fewest_hills, "hills in the apparent area"),
-        *_below(
-            common.contacts[0, place], LIMITS.fewest_contacts, "summits in contact"
-        ),
+        *_below(contacts, LIMITS.fewest_contacts, "summits in contact"),
     )
 
 

@@ -48,12 +48,14 @@ class LineMoments:
     @property
     def density(self) -> FloatArray:
         """Summits per area [1/m^2]."""
-        return self.curvature / self.slope / (6 * np.pi * np.sqrt(3))
+        density: FloatArray = self.curvature / self.slope / (6 * np.pi * np.sqrt(3))
+        return density
 
     @property
     def radius(self) -> FloatArray:
         """Radius of the mean summit [m]."""
-        return 3 / 8 * np.sqrt(np.pi / self.curvature)
+        radius: FloatArray = 3 / 8 * np.sqrt(np.pi / self.curvature)
+        return radius
 
     @property
     def summit_height(self) -> FloatArray:
@@ -187,7 +189,9 @@ def _sums_of(breadth: FloatArray) -> tuple[FloatArray, ...]:
 @cache
 def _summit_tables() -> FloatArray:
     """Return the logarithms of the sums at each spread, shape (n, 4, n_separations)."""
-    return np.log([_summits(1.5 / (1 - spread**2)) for spread in _SPREADS])
+    sums = np.array([_summits(1.5 / (1 - spread**2)) for spread in _SPREADS])
+    table: FloatArray = np.log(sums)
+    return table
 
 
 def _summits(breadth: float) -> FloatArray:
