@@ -181,8 +181,7 @@ def surface_command(
     D [-] and G [m] come from the structure function. A surface without a scaling
     range has no D and G. The band-limited surface has an H, a roll-off and rms height,
     slope and curvature; a map with a lay has both directions.
-    With --iso: the roughness parameters of ISO 21920 and
-    ISO 25178 as well.
+    With --iso: the roughness parameters of ISO 21920 and ISO 25178 as well.
 
     Examples:
         jointbench surface surface-a.csv surface-b.csv --json surfaces.json
