@@ -17,7 +17,7 @@ from jointbench.signal.band_limited.weighted_draws import WeightedDraws
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 
 _NODES = 300
-_RESOLVED = 4.0
+RESOLVED = 4.0
 """Shortest wavelength of the moments [samples]: two samples are alias and noise."""
 _CUT_HALF = 2 * np.pi / np.sqrt(2 * np.log(2))
 """Wavelength at which a Gaussian blur transmits half the amplitude, over its width."""
@@ -63,7 +63,7 @@ def shortest_wave(likelihood: SpectralLikelihood, model: BandLimited) -> float:
     top = omega[clear[0] - 1] if clear.size and clear[0] > 0 else omega[-1]
     if clear.size and clear[0] == 0:
         top = omega[0]
-    bounds = (_RESOLVED, 2 * np.pi / transfer.highest, 2 * np.pi / float(top))
+    bounds = (RESOLVED, 2 * np.pi / transfer.highest, 2 * np.pi / float(top))
     return float(max(bounds))
 
 
@@ -128,7 +128,7 @@ def measured_density(sample: LineSample) -> LineDensity | None:
 
 def _measured_ends(sample: LineSample) -> tuple[float, float]:
     """Return the shortest and the longest wavelength of the sums [samples]."""
-    return max(_RESOLVED, 2 * np.pi / sample.transfer.highest), longest_wave(sample)
+    return max(RESOLVED, 2 * np.pi / sample.transfer.highest), longest_wave(sample)
 
 
 def _resolved_spectrum(
