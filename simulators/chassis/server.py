@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The simulated chassis as a server on the loopback interface.
 
-Besides NI's service it has a second, small one for the position and the strokes of the
-hammer. A real server does not have it, and no measuring program depends on it.
+Besides NI's service it has a second, small one for its clock, and for the position and
+the strokes of the hammer. A real server does not have it, and no measuring program
+depends on it.
 """
 
 import json
+import math
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
@@ -125,6 +127,11 @@ class SimulatedChassis:
         return tuple(live.history) if isinstance(live, LivePlates) else ()
 
     @property
+    def delivered(self) -> int:
+        """Samples per channel delivered over all streams."""
+        return self._delivered if self._service is None else self._service.delivered
+
+    @property
     def sensors(self) -> tuple[PluggedSensor, ...]:
         """Sensors at the first inputs."""
         return () if self._live is None else self._live.sensors
@@ -163,9 +170,12 @@ class SimulatedChassis:
             ) from error
         self._service = self._new_service()
         add_servicer(self._service, server)
+        methods = {"Clock": _clock_handler(self._pace)}
         if isinstance(self._live, LivePlates):
-            hand = _hand_handler(self._live, self._service)
-            server.add_generic_rpc_handlers((hand,))
+            methods["Strike"] = _strike_handler(self._live, self._service)
+        server.add_generic_rpc_handlers(
+            (grpc.method_handlers_generic_handler(HAND_SERVICE, methods),)
+        )
         server.start()
         self._server = server
 
@@ -251,7 +261,13 @@ def _inventory(setup: ChassisSetup, sensors: tuple[PluggedSensor, ...]) -> Inven
     )
 
 
-def _hand_handler(live: LivePlates, service: ChassisService) -> grpc.GenericRpcHandler:
+def _clock_handler(pace: Pace) -> grpc.RpcMethodHandler:
+    """Return what states whether the chassis has a clock of its own."""
+    clock = b"none" if math.isinf(pace.speed) else b"own"
+    return grpc.unary_unary_rpc_method_handler(lambda request, context: clock)
+
+
+def _strike_handler(live: LivePlates, service: ChassisService) -> grpc.RpcMethodHandler:
     def strike(request: bytes, context: grpc.ServicerContext) -> bytes:
         changes: dict[str, Any] = json.loads(request)
         try:
@@ -261,6 +277,4 @@ def _hand_handler(live: LivePlates, service: ChassisService) -> grpc.GenericRpcH
         planned = live.strike(position=service.latest())
         return json.dumps(asdict(planned)).encode()
 
-    return grpc.method_handlers_generic_handler(
-        HAND_SERVICE, {"Strike": grpc.unary_unary_rpc_method_handler(strike)}
-    )
+    return grpc.unary_unary_rpc_method_handler(strike)

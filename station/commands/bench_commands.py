@@ -128,7 +128,10 @@ def simulate_command(
     ] = "sim:plates?speed=1&interval=2&port=31763",
     module: Annotated[
         str,
-        typer.Option(help="Module: 9234, 9231, 9250, 9230, 4431, 9215 or 6363."),
+        typer.Option(
+            metavar="NAME,...",
+            help="Modules: 9234, 9231, 9250, 9230, 4431, 9215 or 6363.",
+        ),
     ] = "",
     debug: Debug = False,
 ) -> None:
