@@ -196,9 +196,7 @@ class Chassis:
         """Return the currents of devices for sensors [A], by name."""
         found = {}
         for name in devices:
-            device = self._system().devices[name]
-            values = reported(lambda d=device: d.ai_current_int_excit_discrete_vals)
-            found[name] = tuple(float(value) for value in values or () if value > 0)
+            found[name] = _currents(self._system().devices[name])
         return found
 
     def _system(self) -> Any:
@@ -358,6 +356,11 @@ class AnalogTask:
             self._left.append(self._name)
         except DaqError:
             return
+
+
+def _currents(device: Any) -> tuple[float, ...]:
+    values = reported(lambda: device.ai_current_int_excit_discrete_vals)
+    return tuple(float(value) for value in values or () if value > 0)
 
 
 def _device(axis: Axis) -> str:
