@@ -13,6 +13,7 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.band_limited.band_records import (
     BandLimitedFit,
+    DrawnModels,
     Interval95,
     RollOffVerdict,
 )
@@ -21,6 +22,7 @@ from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
     expected_deviance,
     longest_wave,
+    measured_density,
     measured_moments,
     modelled_moments,
     spectral_moments,
@@ -208,6 +210,7 @@ def _no_band(found: _Found, reason: str) -> BandLimitedFit:
         model=None,
         pitch=sample.pitch,
         scale=sample.scale,
+        density=measured_density(sample),
     )
 
 
@@ -244,6 +247,10 @@ def _described(found: _Found) -> BandLimitedFit:
         model=model,
         pitch=sample.pitch,
         scale=sample.scale,
+        draws=DrawnModels(
+            tuple(likelihood.model(one) for one in draws.parameters),
+            tuple(float(one) for one in draws.weight),
+        ),
     )
 
 

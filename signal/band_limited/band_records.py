@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 
 
@@ -62,6 +63,38 @@ class RoughnessMoments:
 
 
 @dataclass(frozen=True, slots=True)
+class DrawnModels:
+    """Models of the posterior of a fit.
+
+    Attributes:
+        models: in units of the fit's scale and pitch.
+        weight: of each, sum 1.
+    """
+
+    models: tuple[BandLimited, ...]
+    weight: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineDensity:
+    """Two-sided density of heights along a line, known filters divided out.
+
+    Attributes:
+        wavenumber: of the bins [rad/m], shape (n_bins,).
+        density: [m^3/rad], same shape.
+        count: independent ordinates in each [-], same shape.
+    """
+
+    wavenumber: FloatArray
+    density: FloatArray
+    count: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "wavenumber", "density", "count")
+
+
+@dataclass(frozen=True, slots=True)
 class BandLimitedFit:
     """The band-limited self-affine surface that describes a line of heights.
 
@@ -85,6 +118,8 @@ class BandLimitedFit:
         model: in units of `scale` and `pitch`; None without a self-affine band.
         pitch: [m].
         scale: [m].
+        draws: of the model; None without a self-affine band.
+        density: within the wavelengths of the moments; None where the model has it.
     """
 
     verdict: RollOffVerdict
@@ -101,3 +136,5 @@ class BandLimitedFit:
     model: BandLimited | None
     pitch: float
     scale: float
+    draws: DrawnModels | None = None
+    density: LineDensity | None = None

@@ -10,6 +10,7 @@ from jointbench.signal.surface.levelling import level
 from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.station.pipeline.roughness_words import HEADING, roughness_words
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.roughness.texture_figures import texture_items
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.plot_numbers import thin
@@ -34,6 +35,7 @@ def surface_section(chains: Sequence[SurfaceChain]) -> Section:
     items: list[Item] = [_heights(chain, n) for n, chain in enumerate(chains)]
     items += [_structure_plot(chains), _spectrum_plot(chains)]
     items += [_slope_plot(chains), _table(chains)]
+    items += texture_items([(c.surface.name, c.texture) for c in chains])
     items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
     items += [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
     return Section("surfaces", "Surfaces", tuple(items))
