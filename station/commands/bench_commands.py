@@ -129,7 +129,7 @@ def simulate_command(
     module: Annotated[
         str,
         typer.Option(
-            metavar="NAME,...",
+            metavar="NAME",
             help="Modules: 9234, 9231, 9250, 9230, 4431, 9215 or 6363.",
         ),
     ] = "",
@@ -145,7 +145,7 @@ def simulate_command(
     Examples:
         jointbench simulate 'sim:plates?interval=2&port=31763'
 
-        jointbench simulate 'sim:sine?port=31763' --module 9234,9215
+        jointbench simulate sim:sine --module 9234,9215
     """
     from jointbench.station.commands.simulate import run_simulate
 
