@@ -39,9 +39,9 @@ _Cutoff = Annotated[
 _Turn = Annotated[
     int,
     typer.Option(
-        metavar="DEGREES",
-        help="Turn of the second map as measured, anticlockwise, a multiple of 90; it "
-        "is then flipped onto the first one.",
+        metavar="ANGLE",
+        help="Turn of the second map as measured [deg], anticlockwise, a multiple of "
+        "90; it is then flipped onto the first one.",
     ),
 ]
 _Points = Annotated[
@@ -52,7 +52,8 @@ _Columns = Annotated[
     str | None,
     typer.Option(
         metavar="ROLE:UNIT,...",
-        help="Columns of a plain table of heights, for example 'x:mm,y:mm,z:um'.",
+        help="Columns of a plain table of heights, for example 'x:um,y:um,z:um'; "
+        "'x:um,z:um' would be a profile.",
     ),
 ]
 _Plot = Annotated[

@@ -87,7 +87,7 @@ def solve_contact(
         old = pressure
         pressure = np.maximum(old - length * direction, 0)
         # A point that overlaps without pressure joins the contact, and the search
-        # starts anew from the steepest descent.
+        # begins again from the steepest descent.
         joining = (pressure == 0) & (gap < 0)
         pressure[joining] -= length * gap[joining]
         conjugate = 0.0 if joining.any() else 1.0

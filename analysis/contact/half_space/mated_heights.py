@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two measured maps face to face: orientation, common grid, height difference."""
+"""Two measured maps in contact: orientation, common grid, sum of their heights."""
 
 from dataclasses import dataclass
 
@@ -46,7 +46,7 @@ class MatedHeights:
 def mated_heights(
     lower: Areal, upper: Areal | None, *, turn: int = 0, most_points: int = 512
 ) -> MatedHeights:
-    """Put two maps face to face; one alone meets a plane.
+    """Mate two maps; one alone meets a plane.
 
     Both were measured from outside. The upper one is turned in its own plane as
     measured, then flipped about the direction of its columns, so that its left edge

@@ -36,7 +36,7 @@ def test_a_sphere_is_that_of_hertz() -> None:
 
 @pytest.mark.parametrize("share", [0.2, 0.7])
 def test_a_sinusoid_is_that_of_westergaard(share: float) -> None:
-    """Contact over 2/pi asin((p/p*)^(1/2)) of the width, within a point at each edge."""
+    """Contact over 2/pi asin((p/p*)^(1/2)) of the width, to a point at each edge."""
     points, height = 128, 0.01
     heights = np.tile(height * np.cos(2 * np.pi * np.arange(points) / points), (4, 1))
     influence = periodic_influence(heights.shape, (1 / points, 1 / points), 1.0)
@@ -45,7 +45,7 @@ def test_a_sinusoid_is_that_of_westergaard(share: float) -> None:
     assert_allclose(found.area_share, wanted, atol=2 / points)
 
 
-def test_faces_meet_as_declared() -> None:
+def test_maps_are_mated_as_declared() -> None:
     """The left edge of the upper map, seen from outside, lies on the right edge."""
     lower, upper = np.zeros((2, 20, 24))
     lower[5, 3], upper[5, 20] = 1e-6, 1e-6

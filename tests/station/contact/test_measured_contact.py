@@ -38,7 +38,7 @@ def test_two_measured_surfaces_get_laws_with_intervals(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Without D and G there are laws of the spectrum, a verdict and a picture."""
+    """Laws of the spectrum beside the fractal one, a verdict and a picture."""
     target, page = tmp_path / "contact.json", tmp_path / "contact.html"
     files = [f"--surface={ground / name}.csv" for name in "ab"]
     code = run(monkeypatch, *files, AREA, "--load=25 kN", f"--json={target}",
@@ -47,11 +47,12 @@ def test_two_measured_surfaces_get_laws_with_intervals(
     said = " ".join(capsys.readouterr().out.split())
     assert "all laws lie within a factor" in said
     found = json.loads(target.read_text(encoding="utf-8"))
-    assert found["models"] == []
+    assert [one["name"] for one in found["models"]] == ["ke_3d_modified"]
     measured = found["measured"]
     assert measured["reference_area_m2"] == 0.01
     laws = {one["name"]: one for one in measured["laws"]}
     assert {"persson", "greenwood_williamson", "bush_gibson_thomas"} <= set(laws)
+    assert laws.pop("ke_3d_modified")["real_area"] > 0
     for one in laws.values():
         low, high = one["normal_stiffness_interval"]
         assert low < one["normal_stiffness"] < high
