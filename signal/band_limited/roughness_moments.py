@@ -2,7 +2,6 @@
 """Root mean squares of height, slope and curvature between two wavelengths."""
 
 import numpy as np
-from scipy.special import digamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.band_limited.band_records import (
@@ -17,7 +16,7 @@ from jointbench.signal.band_limited.weighted_draws import WeightedDraws
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 
 _NODES = 300
-_RESOLVED = 4.0
+RESOLVED = 4.0
 """Shortest wavelength of the moments [samples]: two samples are alias and noise."""
 _CUT_HALF = 2 * np.pi / np.sqrt(2 * np.log(2))
 """Wavelength at which a Gaussian blur transmits half the amplitude, over its width."""
@@ -63,7 +62,7 @@ def shortest_wave(likelihood: SpectralLikelihood, model: BandLimited) -> float:
     top = omega[clear[0] - 1] if clear.size and clear[0] > 0 else omega[-1]
     if clear.size and clear[0] == 0:
         top = omega[0]
-    bounds = (_RESOLVED, 2 * np.pi / transfer.highest, 2 * np.pi / float(top))
+    bounds = (RESOLVED, 2 * np.pi / transfer.highest, 2 * np.pi / float(top))
     return float(max(bounds))
 
 
@@ -128,7 +127,7 @@ def measured_density(sample: LineSample) -> LineDensity | None:
 
 def _measured_ends(sample: LineSample) -> tuple[float, float]:
     """Return the shortest and the longest wavelength of the sums [samples]."""
-    return max(_RESOLVED, 2 * np.pi / sample.transfer.highest), longest_wave(sample)
+    return max(RESOLVED, 2 * np.pi / sample.transfer.highest), longest_wave(sample)
 
 
 def _resolved_spectrum(
@@ -191,16 +190,3 @@ def _in_metres(
         curvature=curvature,
         modelled=modelled,
     )
-
-
-def expected_deviance(count: FloatArray) -> tuple[float, float]:
-    """Return mean and standard deviation of the gamma deviance of a right model.
-
-    Args:
-        count: independent ordinates of each bin [-], shape (n_bins,).
-
-    Source:
-        Moments of ln of a gamma variable; the variance by a normal expansion.
-    """
-    mean = 2 * count * (np.log(count) - digamma(count))
-    return float(mean.sum()), float(np.sqrt(np.sum(2 * mean**2)))

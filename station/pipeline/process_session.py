@@ -36,10 +36,16 @@ from jointbench.station.pipeline.recipe_settings import (
     hit_criteria,
     stored_hits,
     surface_treatment_of,
+    texture_request_of,
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun, StageStore
-from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.pipeline.surface_options import SurfaceOptions
+from jointbench.station.pipeline.surface_stages import (
+    SurfaceChain,
+    chain_cautions,
+    with_texture,
+)
 from jointbench.station.schemas.bench_model import ContactTable
 from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.schemas.recipe import Recipe
@@ -196,7 +202,11 @@ def _surfaces(
     if not recipe.surface.use:
         return ()
     gamma = recipe.surface.gamma or DEFAULT_GAMMA
-    return surface_stages(session.surfaces, run, gamma, surface_treatment_of(recipe))
+    treatment = surface_treatment_of(recipe)
+    chains = surface_stages(session.surfaces, run, gamma, treatment)
+    asked = SurfaceOptions(treatment, texture=texture_request_of(recipe))
+    pairs = zip(chains, session.surfaces, strict=True)
+    return tuple(with_texture(chain, given, asked) for chain, given in pairs)
 
 
 def _contact(
