@@ -13,17 +13,18 @@ HEAD = """\
 # Laws of measured surfaces compared with boundary elements
 
 Made by `python benchmarks/contact/measured_laws.py --store FILE --page` from {count}
-surfaces (seeds {first} to {last}, {states} states). Needs the extra `oracle`. tamaas's own generator
-makes each surface ({points} x {points} points, periodic): H {hurst}, roll-off at 4 to 16
-waves a side, longest wave from the side to the roll-off, shortest wave of 8 to 16 points, rms gradient
-0.01 to 0.3. It is measured as a map of heights, fitted and predicted as `jointbench
-contact` does; tamaas solves it as a periodic half-space at p / (E* h') of 1e-4 to 1 in
-half decades. k is dp/d(mean gap) by a central difference of 4 %. Elastic: hardness is
-out of reach.
+surfaces (seeds {first} to {last}, {states} states). Needs the extra `oracle`. tamaas's
+own generator makes each surface ({points} x {points} points, periodic): H {hurst},
+roll-off at 4 to 16 waves a side, longest wave from the side to the roll-off, shortest
+wave of 8 to 16 points, rms gradient 0.01 to 0.3. It is measured as a map of heights,
+fitted and predicted as `jointbench contact` does; tamaas solves it as a periodic
+half-space at p / (E* h') of 1e-4 to 1 in half decades. k is dp/d(mean gap) by a central
+difference of 4 %. Elastic: hardness is out of reach.
 
 gamma, the numbers of contacts and hills, and the accuracy of the laws
-(`analysis/contact/spectral/law_limits.py`) were set with 11 other surfaces (seeds 100 to
-110), and the run was tried with seeds 900 and 901; the seeds of this page were not used before.
+(`analysis/contact/spectral/law_limits.py`) were set with 11 other surfaces (seeds 100
+to 110), and the run was tried with seeds 900 and 901; the seeds of this page were not
+used before.
 """
 
 
@@ -36,7 +37,8 @@ def wilson(right: int, count: int) -> str:
     half = z / (1 + z * z / count)
     half *= math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
     low, high = max(0.0, middle - half), min(1.0, middle + half)
-    return f"{right} of {count} = {100 * share:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
+    ends = f"({100 * low:.1f} to {100 * high:.1f})"
+    return f"{right} of {count} = {100 * share:.1f} % {ends}"
 
 
 def states_of(rows: Iterable[dict]) -> list[dict]:
@@ -130,13 +132,13 @@ def _fits(rows: list[dict]) -> list[str]:
     return [
         "## The fit",
         "",
-        f"Verdicts: {said}. A sharp short end is no Matern spectrum, so most surfaces are "
-        "taken by the spectrum of their lines. Height over that of the map: "
+        f"Verdicts: {said}. A sharp short end is no Matern spectrum, so such surfaces "
+        "are taken by the spectrum of their lines. Height over that of the map: "
         f"{height.mean():.3f} +- {height.std():.3f}; gradient: {slope.mean():.3f} +- "
         f"{slope.std():.3f}.",
         "",
-        "Contacts smaller than a point make the boundary elements too stiff at the least "
-        "loads: the power law of one hill is compared there with a grid that is too "
-        "coarse to judge it. At p = E* h' less than a thousandth of the gap is left, and "
-        "no grid of this size resolves it.",
+        "Contacts smaller than a point make the boundary elements too stiff at the "
+        "least loads: the power law of one hill is compared there with a grid that is "
+        "too coarse to judge it. At p = E* h' less than a thousandth of the gap is "
+        "left, and no grid of this size resolves it.",
     ]
