@@ -17,7 +17,10 @@ from jointbench.station.commands.bench_commands import (
     record_command,
     simulate_command,
 )
-from jointbench.station.commands.contact_command import contact_command
+from jointbench.station.commands.contact_command import (
+    contact_command,
+    pressure_map_command,
+)
 from jointbench.station.commands.file_commands import (
     export_command,
     inspect_command,
@@ -76,6 +79,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
     "Joints and machines": {
         "identify": identify_command,
         "contact": contact_command,
+        "pressure-map": pressure_map_command,
         "machine": machine_command,
         "gap": gap_command,
     },

@@ -23,8 +23,8 @@ COLUMNS = (
 )
 _PREFERRED = ("persson", "bush_gibson_thomas", "greenwood_williamson", "yovanovich")
 REMEDY = (
-    "the reasons below name what is outside: a longer measurement, a larger apparent "
-    "area or a higher load may bring it inside"
+    "what is outside is below; 'jointbench pressure-map' solves measured maps without "
+    "a law of random heights"
 )
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from jointbench.station.main import app, exit_code
 
@@ -14,13 +15,12 @@ AREA = "--nominal-area=0.01"
 
 @pytest.fixture(scope="module")
 def ground(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two profiles of 800 points of correlated heights, in one folder."""
+    """Two profiles of 400 points, exponential correlation, in one folder."""
     folder = tmp_path_factory.mktemp("faces")
     random = np.random.default_rng(8)
-    kernel = np.exp(-0.5 * (np.arange(-40, 41) / 9) ** 2)
     for name in ("a", "b"):
-        z = np.convolve(random.standard_normal(880), kernel, mode="valid")[:800]
-        rows = zip(np.arange(800) * 1.0, 0.1 * z, strict=True)
+        z = lfilter([1.0], [1.0, -0.9], random.standard_normal(500))[100:]
+        rows = zip(np.arange(400) * 1.0, 0.1 * z, strict=True)
         text = "\n".join(f"{x:.1f},{y:.6f}" for x, y in rows)
         (folder / f"{name}.csv").write_text(text + "\n", encoding="utf-8")
     return folder
@@ -38,7 +38,7 @@ def test_two_measured_surfaces_get_laws_with_intervals(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Without D and G there are laws of the spectrum, a verdict and a picture."""
+    """Laws of the spectrum beside the fractal one, a verdict and a picture."""
     target, page = tmp_path / "contact.json", tmp_path / "contact.html"
     files = [f"--surface={ground / name}.csv" for name in "ab"]
     code = run(monkeypatch, *files, AREA, "--load=25 kN", f"--json={target}",
@@ -47,11 +47,12 @@ def test_two_measured_surfaces_get_laws_with_intervals(
     said = " ".join(capsys.readouterr().out.split())
     assert "all laws lie within a factor" in said
     found = json.loads(target.read_text(encoding="utf-8"))
-    assert found["models"] == []
+    assert [one["name"] for one in found["models"]] == ["ke_3d_modified"]
     measured = found["measured"]
     assert measured["reference_area_m2"] == 0.01
     laws = {one["name"]: one for one in measured["laws"]}
     assert {"persson", "greenwood_williamson", "bush_gibson_thomas"} <= set(laws)
+    assert laws.pop("ke_3d_modified")["real_area"] > 0
     for one in laws.values():
         low, high = one["normal_stiffness_interval"]
         assert low < one["normal_stiffness"] < high
@@ -67,3 +68,36 @@ def test_an_area_is_asked_for_where_there_is_no_scaling_range(
     error = capsys.readouterr().err
     assert "--nominal-area" in error
     assert error.count("\n") == 1
+
+
+def test_maps_get_pressures_and_profiles_are_refused(
+    monkeypatch: pytest.MonkeyPatch,
+    ground: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A table, JSON with waviness apart from roughness, and a picture."""
+    random = np.random.default_rng(4)
+    z = random.standard_normal((24, 24))
+    rows = [f"{x},{y},{z[y, x]:.5f}" for y in range(24) for x in range(24)]
+    face = tmp_path / "face.csv"
+    face.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    target, page = tmp_path / "map.json", tmp_path / "map.html"
+    given = ["jointbench", "pressure-map", "--modulus=115 GPa", "--hardness=231 HB",
+             "--pressure=50 MPa", "--cutoff=10 um"]  # fmt: skip
+    maps = [str(face), str(face), "--columns=x:um,y:um,z:um"]
+    outputs = [f"--json={target}", f"--plot={page}"]
+    monkeypatch.setattr("sys.argv", [*given, *maps, *outputs])
+    assert exit_code(app, debug=False) == 0
+    found = json.loads(target.read_text(encoding="utf-8"))
+    state = found["states"][0]
+    assert 0 < state["real_area_share"] < 1
+    parts = ("waviness", "roughness")
+    total = sum(state[f"{one}_compliance_times_area"] for one in parts)
+    assert total == pytest.approx(state["compliance_times_area"])
+    assert "pressures-0" in page.read_text(encoding="utf-8")
+    capsys.readouterr()
+    profile = [str(ground / "a.csv"), "--columns=x:um,z:um"]
+    monkeypatch.setattr("sys.argv", [*given, *profile])
+    assert exit_code(app, debug=False) == 2
+    assert "'jointbench contact' has laws for profiles" in capsys.readouterr().err
