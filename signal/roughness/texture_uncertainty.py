@@ -25,6 +25,8 @@ FILTER_TOLERANCE = 0.05
 of their values is taken as rectangular."""
 _MAP_SIDE = 320
 """Side of the piece of a map on which components are determined [points]."""
+_WHOLE_SIDE = 400
+"""Side up to which they are determined on the whole map [points]."""
 _OFFSETS = (0.5, 1.0, 1.5)
 """Deviations of a cause at which parameters are computed [standard deviations]."""
 _HEIGHT_POWER = {"sk": 0, "ku": 0, "mrk1": 0, "mrk2": 0, "td": 0, "sm": 0, "al": 0}
@@ -73,7 +75,7 @@ def measured_texture(
 
 def _piece(surface: Surface, settings: TextureSettings) -> Surface:
     """Return the middle of a large map, and any other surface as it is."""
-    if isinstance(surface, Profile) or max(surface.heights.shape) <= 2 * _MAP_SIDE:
+    if isinstance(surface, Profile) or max(surface.heights.shape) <= _WHOLE_SIDE:
         return surface
     least = [
         _MAP_SIDE if settings.long is None else int(2.2 * settings.long / one) + 64
