@@ -110,13 +110,17 @@ class SurfacePart(StrictTable):
 
 
 class ContactPart(StrictTable):
-    """Input of the contact law for the prediction of the joint from its surfaces."""
+    """Input of the contact laws for the prediction of the joint from its surfaces.
+
+    The apparent area [m^2] asks for the laws of measured surfaces as well.
+    """
 
     modulus: Pressure
     hardness: Pressure
     preload: Force | None = None
     poisson: Annotated[float, Field(ge=0, lt=0.5)] = 0.25
     model: str = "ke_3d_modified"
+    area: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
 
 
 class IdentificationPart(StrictTable):
