@@ -100,7 +100,9 @@ def test_the_command_shows_and_writes_them(tmp_path, capsys):
         json_target=str(target),
         options=SurfaceOptions(texture=ASKED),
     )
-    assert "roughness by ISO 21920-2" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "roughness by ISO 21920-2" in shown
+    assert "no law: it depends on the L-filter" in shown
     texture = json.loads(target.read_text())["files"][0]["texture"]
     assert texture["standard"] == "ISO 21920-2"
     assert texture["sections"] == 2
