@@ -15,7 +15,7 @@ from jointbench.signal.roughness.uncertain_parameters import Values
 
 _PAIRS = 12
 """Pairs of noise, each with both signs, for a profile [-]."""
-_MAP_PAIRS = 3
+_MAP_PAIRS = 6
 _DOSES = (1.0, 2.0)
 """Variances of added noise over that of the measured heights [-]."""
 _SEED = 20211201

@@ -25,7 +25,9 @@ FILTER_TOLERANCE = 0.05
 of their values is taken as rectangular."""
 _MAP_SIDE = 320
 """Side of the piece of a map on which components are determined [points]."""
-_OFFSETS, _MAP_OFFSETS = (0.5, 1.0, 1.5), (0.6, 1.3)
+_WHOLE_SIDE = 400
+"""Side up to which they are determined on the whole map [points]."""
+_OFFSETS = (0.5, 1.0, 1.5)
 """Deviations of a cause at which parameters are computed [standard deviations]."""
 _HEIGHT_POWER = {"sk": 0, "ku": 0, "mrk1": 0, "mrk2": 0, "td": 0, "sm": 0, "al": 0}
 _HEIGHT_POWER |= {"tr": 0, "dr": 2}
@@ -73,7 +75,7 @@ def measured_texture(
 
 def _piece(surface: Surface, settings: TextureSettings) -> Surface:
     """Return the middle of a large map, and any other surface as it is."""
-    if isinstance(surface, Profile) or max(surface.heights.shape) <= 2 * _MAP_SIDE:
+    if isinstance(surface, Profile) or max(surface.heights.shape) <= _WHOLE_SIDE:
         return surface
     least = [
         _MAP_SIDE if settings.long is None else int(2.2 * settings.long / one) + 64
@@ -149,9 +151,9 @@ def _filter_part(
 
     both = []
     if settings.short is not None:
-        both.append(_spread(surface, values, lambda off: at(width * off, 0.0)))
+        both.append(_spread(values, lambda off: at(width * off, 0.0)))
     if settings.long is not None:
-        both.append(_spread(surface, values, lambda off: at(0.0, width * off)))
+        both.append(_spread(values, lambda off: at(0.0, width * off)))
     return {
         name: float(np.sqrt(sum(one.get(name, 0.0) ** 2 for one in both)))
         for name in {name for one in both for name in one}
@@ -176,9 +178,7 @@ def _pitch_part(
     """
     if not error:
         return {}
-    scale = _spread(
-        surface, values, lambda off: _of_pitch(surface, settings, off * error)
-    )
+    scale = _spread(values, lambda off: _of_pitch(surface, settings, off * error))
     if isinstance(surface, Profile):
         return scale
     margin = _margin_part(surface, values, settings, error)
@@ -200,30 +200,35 @@ def _of_pitch(surface: Surface, settings: TextureSettings, error: float) -> Valu
 def _margin_part(
     areal: Areal, values: Values, settings: TextureSettings, error: float
 ) -> dict[str, float]:
-    """Return what a share of the sides of a map changes that lies beyond its area."""
-    cut = [max(1, round(0.5 * error * n)) for n in areal.heights.shape]
-    rows, columns = (
-        slice(k, n - k) for k, n in zip(cut, areal.heights.shape, strict=True)
+    """Return what a share of the sides of a map changes that lies beyond its area.
+
+    Each side is cut alone: four strips of a rough surface are independent.
+    """
+    rows, columns = areal.heights.shape
+    down, along = (max(1, round(0.5 * error * n)) for n in (rows, columns))
+    pieces = (
+        np.s_[down:, :],
+        np.s_[: rows - down, :],
+        np.s_[:, along:],
+        np.s_[:, : columns - along],
     )
-    inner = replace(
-        areal, heights=areal.heights[rows, columns], valid=areal.valid[rows, columns]
-    )
-    found = texture_parameters(surface_texture(inner, settings)).values
-    share = min(1.0, 0.5 * error * max(areal.heights.shape) / min(cut))
-    return {name: share * one for name, one in _apart(values, [found]).items()}
+    cases = []
+    for piece in pieces:
+        inner = replace(areal, heights=areal.heights[piece], valid=areal.valid[piece])
+        cases.append(texture_parameters(surface_texture(inner, settings)).values)
+    share = min(1.0, 0.5 * error * max(rows, columns) / min(down, along))
+    both = share * float(np.sqrt(len(cases)))
+    return {name: both * one for name, one in _apart(values, cases).items()}
 
 
-def _spread(
-    surface: Surface, values: Values, at: Callable[[float], Values]
-) -> dict[str, float]:
+def _spread(values: Values, at: Callable[[float], Values]) -> dict[str, float]:
     """Return the deviation for one standard deviation of a cause.
 
     Parameters step where an element or the central region changes: several offsets on
     both sides give the root mean square of such steps, two do not.
     """
-    offsets = _OFFSETS if isinstance(surface, Profile) else _MAP_OFFSETS
-    cases = [at(sign * one) for one in offsets for sign in (1, -1)]
-    total = 2 * sum(one**2 for one in offsets) / len(cases)
+    cases = [at(sign * one) for one in _OFFSETS for sign in (1, -1)]
+    total = 2 * sum(one**2 for one in _OFFSETS) / len(cases)
     found = _apart(values, cases)
     return {name: one / float(np.sqrt(total)) for name, one in found.items()}
 

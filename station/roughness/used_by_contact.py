@@ -8,8 +8,8 @@ from jointbench.station.screen.value_text import engineering, with_sd
 
 TITLE = "what contact laws take of a surface"
 COLUMNS = ("quantity", "value", "taken by")
-_FRACTAL = "fractal contact laws (mb_2d, ke_3d_modified ...)"
-_SPECTRAL = "laws by spectral moments"
+_FRACTAL = "fractal contact laws"
+_SPECTRAL = "laws of the measured spectrum"
 _NONE = "no law: it depends on the L-filter"
 
 
@@ -42,7 +42,9 @@ def contact_rows(
         letter = "R" if answer.measured.texture.heights.ndim == 1 else "S"
         for name, unit in ((f"{letter}q", "m"), (f"{letter}dq", "")):
             value = answer.measured.named(name).value
-            shown = "-" if value is None else engineering(value, unit).strip()
+            shown = "-"
+            if value is not None:
+                shown = engineering(value, unit) if unit else f"{value:.4g}"
             rows.append((name if unit else f"{name} [-]", shown, _NONE))
     return rows
 

@@ -86,13 +86,19 @@ class SurfacePart(StrictTable):
     @classmethod
     def _known_class(cls, name: str | None) -> str | None:
         """Refuse a class that ISO 21920-3 has not."""
-        return None if name is None else setting_class(name).name
+        try:
+            return None if name is None else setting_class(name).name
+        except JointbenchError as error:
+            raise ValueError(str(error)) from error
 
     @field_validator("scale_errors")
     @classmethod
     def _known_errors(cls, text: str | None) -> str | None:
         """Refuse errors that are no shares."""
-        instrument_errors(text)
+        try:
+            instrument_errors(text)
+        except JointbenchError as error:
+            raise ValueError(str(error)) from error
         return text
 
     @model_serializer(mode="wrap")

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import (
@@ -13,7 +14,9 @@ from jointbench.acquisition.records.surfaces import (
     all_valid,
 )
 from jointbench.station.commands.surface_command import run_surface
+from jointbench.station.pipeline.recipe_settings import texture_request_of
 from jointbench.station.pipeline.surface_options import SurfaceOptions
+from jointbench.station.roughness.texture_figures import texture_items
 from jointbench.station.roughness.texture_request import (
     TextureRequest,
     requested_texture,
@@ -25,6 +28,7 @@ from jointbench.station.roughness.texture_words import (
     parameter_rows,
     title_words,
 )
+from jointbench.station.schemas.recipe import Recipe, SurfacePart
 
 PITCH = 0.5e-6
 ASKED = TextureRequest()
@@ -96,7 +100,9 @@ def test_the_command_shows_and_writes_them(tmp_path, capsys):
         json_target=str(target),
         options=SurfaceOptions(texture=ASKED),
     )
-    assert "roughness by ISO 21920-2" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "roughness by ISO 21920-2" in shown
+    assert "no law: it depends on the L-filter" in shown
     texture = json.loads(target.read_text())["files"][0]["texture"]
     assert texture["standard"] == "ISO 21920-2"
     assert texture["sections"] == 2
@@ -115,3 +121,21 @@ def test_the_command_shows_and_writes_them(tmp_path, capsys):
 def test_requests_that_cannot_be_met_name_the_way_out(typed, iso, said):
     with pytest.raises(UsageError, match=said):
         requested_texture(typed, iso=iso, form=None, robust=False)
+
+
+def test_a_recipe_asks_for_them_with_its_cut_offs():
+    part = SurfacePart(iso=True, lambda_s="2.5 um", lambda_c="0.25 mm", robust=True)
+    asked = texture_request_of(Recipe(name="iso", surface=part))
+    assert (asked.short, asked.long) == pytest.approx((2.5e-6, 0.25e-3))
+    assert asked.robust
+    assert texture_request_of(Recipe(name="plain")) is None
+    with pytest.raises(ValidationError, match="Sc1, Sc2"):
+        SurfacePart(setting_class="N6")
+
+
+def test_a_report_has_traces_curve_and_table():
+    items = texture_items([("sine", texture_answer(sine(), ASKED)), ("other", None)])
+    kinds = [item.kind for item in items]
+    assert kinds == ["figure", "figure", "table", "text"]
+    assert items[1].identifier == "abbott-plot"
+    assert len(items[2].rows) == 16
