@@ -200,9 +200,9 @@ def _lays(likelihood: MapLikelihood, plain: MapMaximum) -> list[tuple[float, flo
         rest = share * np.exp(-found @ rates) - 1
         found += np.linalg.solve((rates * count) @ rates.T, rates @ (count * rest))
     # More power across the lay: ln density falls by the steepness times ln ratio.
-    wide = float(np.hypot(found[1], found[2])) / steepness
+    wide = min(float(np.hypot(found[1], found[2])) / steepness, 3.0)
     angle = 0.5 * float(np.arctan2(found[2], found[1])) + np.pi / 2
-    first = (angle, min(wide, 3.0))
+    first = (angle, wide)
     if np.exp(wide) > _CLEAR_START:
         return [first]
     return [first, *((k * np.pi / _TURNS, 0.3) for k in range(_TURNS))]

@@ -24,7 +24,8 @@ from jointbench.station.pipeline.joint_stages import (
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun
-from jointbench.station.pipeline.surface_stages import SurfaceChain
+from jointbench.station.pipeline.surface_options import PLAIN
+from jointbench.station.pipeline.surface_stages import SurfaceChain, with_band
 from jointbench.station.results.results_beside import StoredResults
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.terminal import working
@@ -104,7 +105,9 @@ def analyse_session(
         )
         preloads = _modes(judged or (), settings, stored, run, remarks)
     with working("fitting surfaces"):
-        surfaces = surface_stages(session.surfaces, run)
+        surfaces = tuple(
+            with_band(one, PLAIN) for one in surface_stages(session.surfaces, run)
+        )
     with working("predicting and identifying the joint"):
         contact = _contact(surfaces, model, run, remarks)
         preloads = tuple(
