@@ -64,7 +64,7 @@ KINDS: dict[str, tuple[Callable[[int], Surface], str]] = {
 
 
 def names(surface: Surface) -> tuple[str, bool]:
-    """Return the names of a surface, and whether it is called fractal over all lags."""
+    """Return the names of a surface, and whether it is called fractal."""
     fit = fit_band_limited([surface])
     kinds = surface_kinds(surface, fit)
     found = {
@@ -85,9 +85,8 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    print(
-        "| surface | right name | names | right | fractal, or too short to decide, without a name |"
-    )
+    last = "fractal, or too short to decide, without a name"
+    print(f"| surface | right name | names | right | {last} |")
     print("|---|---|---|---|---|")
     for kind, (make, right) in KINDS.items():
         seeds = range(asked.seed, asked.seed + asked.count)

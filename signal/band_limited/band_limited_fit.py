@@ -13,6 +13,7 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.band_limited.band_records import (
     BandLimitedFit,
+    DrawnModels,
     Interval95,
     RollOffVerdict,
 )
@@ -24,12 +25,13 @@ from jointbench.signal.band_limited.fit_limits import (
     SATURATED_RATIO,
     WIDEST_TOLERANCE,
 )
+from jointbench.signal.band_limited.gamma_deviance import expected_deviance
 from jointbench.signal.band_limited.line_sample import LineSample, line_sample
 from jointbench.signal.band_limited.map_fit import fit_map
 from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
-    expected_deviance,
     longest_wave,
+    measured_density,
     measured_moments,
     modelled_moments,
     spectral_moments,
@@ -209,6 +211,7 @@ def _no_band(found: _Found, reason: str) -> BandLimitedFit:
         model=None,
         pitch=sample.pitch,
         scale=sample.scale,
+        density=measured_density(sample),
     )
 
 
@@ -245,6 +248,10 @@ def _described(found: _Found) -> BandLimitedFit:
         model=model,
         pitch=sample.pitch,
         scale=sample.scale,
+        draws=DrawnModels(
+            tuple(likelihood.model(one) for one in draws.parameters),
+            tuple(float(one) for one in draws.weight),
+        ),
     )
 
 

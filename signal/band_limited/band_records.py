@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.signal.band_limited.lay_spectrum import LaySpectrum
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 
@@ -67,6 +68,38 @@ class RoughnessMoments:
 
 
 @dataclass(frozen=True, slots=True)
+class DrawnModels:
+    """Models of the posterior of a fit.
+
+    Attributes:
+        models: in units of the fit's scale and pitch.
+        weight: of each, sum 1.
+    """
+
+    models: tuple[BandLimited, ...]
+    weight: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineDensity:
+    """Two-sided density of heights along a line, known filters divided out.
+
+    Attributes:
+        wavenumber: of the bins [rad/m], shape (n_bins,).
+        density: [m^3/rad], same shape.
+        count: independent ordinates in each [-], same shape.
+    """
+
+    wavenumber: FloatArray
+    density: FloatArray
+    count: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "wavenumber", "density", "count")
+
+
+@dataclass(frozen=True, slots=True)
 class SurfaceLay:
     """Direction of a map along which heights vary least, and what differs across it.
 
@@ -118,6 +151,8 @@ class BandLimitedFit:
             self-affine band.
         pitch: [m].
         scale: [m].
+        draws: of the model; None without a self-affine band.
+        density: within the wavelengths of the moments; None where the model has it.
         mapped: whether a map was fitted over both wavenumbers.
         lay: of a map; None for profiles and for maps without one.
         map_model: spectrum of a map over both wavenumbers, in the same units; None for
@@ -138,6 +173,8 @@ class BandLimitedFit:
     model: BandLimited | None
     pitch: float
     scale: float
+    draws: DrawnModels | None = None
+    density: LineDensity | None = None
     mapped: bool = False
     lay: SurfaceLay | None = None
     map_model: LaySpectrum | None = None

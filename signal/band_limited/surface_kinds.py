@@ -57,7 +57,7 @@ class SurfaceKinds:
     Attributes:
         marks: that repeat; None without.
         bend: between two power laws; None without.
-        directions: of two crossing lays [rad]; empty without.
+        directions: in which two sets of scratches run [rad]; empty without.
         skewness: of the levelled heights [-].
         two_processes: whether the heights are as skewed as two processes leave them.
     """
@@ -174,7 +174,7 @@ def _skewness(surface: Surface) -> tuple[float, bool]:
 
 
 def _two_directions(areal: Areal) -> tuple[float, ...]:
-    """Return the directions of two crossing lays, none for one or for no lay."""
+    """Return two directions in which scratches run, none for one lay or none."""
     sample = map_sample(areal)
     if sample is None:
         return ()

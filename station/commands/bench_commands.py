@@ -128,13 +128,16 @@ def simulate_command(
     ] = "sim:plates?speed=1&interval=2&port=31763",
     module: Annotated[
         str,
-        typer.Option(help="Module: 9234, 9231, 9250, 9230, 4431, 9215 or 6363."),
+        typer.Option(
+            metavar="NAME,...",
+            help="Modules: 9234, 9231, 9250, 9230, 4431, 9215 or 6363.",
+        ),
     ] = "",
     debug: Debug = False,
 ) -> None:
     """Serve simulated NI devices over gRPC.
 
-    Any program that uses nidaqmx over gRPC can connect to them. The parameter
+    Programs that use nidaqmx over gRPC can connect. The parameter
     'interval' is the time between hits [s], 'speed' the simulated time per real time
     [-], 'port' the TCP port. 'sim:sine' has a sine at every input instead of a
     specimen. Stop the server with Ctrl-C.

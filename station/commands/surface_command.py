@@ -37,8 +37,12 @@ from jointbench.station.pipeline.surface_stages import (
     with_texture,
 )
 from jointbench.station.report.surface_section import surface_report
+from jointbench.station.roughness.reader_words import shown_readers
 from jointbench.station.roughness.texture_screen import measured_of, show_textures
 from jointbench.station.roughness.texture_words import pooled_json
+from jointbench.station.roughness.used_by_contact import COLUMNS as USED_COLUMNS
+from jointbench.station.roughness.used_by_contact import TITLE as USED_TITLE
+from jointbench.station.roughness.used_by_contact import contact_rows
 from jointbench.station.screen.band_limited_words import (
     COLUMNS,
     TEXT_COLUMNS,
@@ -68,6 +72,7 @@ def run_surface(
         BadData: a file cannot be read, or a surface is too small.
     """
     check_outputs(files, [json_target, options.structure_map, report])
+    readers = shown_readers(files, options.texture is not None, console(json_target))
     read = read_surfaces(files, columns=columns)
     given = [surface for _, surface in read]
     require_suited(given, options)
@@ -81,7 +86,9 @@ def run_surface(
         if options.structure_map is not None:
             write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
-        results.append({"file": str(path)} | surface_json(chain))
+        results.append(
+            {"file": str(path)} | surface_json(chain) | readers.get(path, {})
+        )
     pooled = _pooled(given, chains, options.treatment) if options.pool else None
     show_surfaces(chains, json_target, pooled)
     if report is not None:
@@ -117,6 +124,11 @@ def show_surfaces(
             screen.print(f"  {chain.surface.name}: {line}", markup=False)
     _show_bands(screen, chains, pooled)
     show_textures(screen, chains, pool=pooled is not None)
+    for chain in chains:
+        if chain.texture is not None:
+            taken = contact_rows(chain.fit, chain.band, chain.texture)
+            title = f"{chain.surface.name}: {USED_TITLE}"
+            screen.print(table(title, USED_COLUMNS, taken, words={0, 2}))
     if pooled is not None:
         for line in (pooled.fit.reason, *pooled.beside.lines):
             screen.print(f"  {pooled.structure.name}: {line}", markup=False)

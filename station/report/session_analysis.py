@@ -24,11 +24,19 @@ from jointbench.station.pipeline.joint_stages import (
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun
-from jointbench.station.pipeline.surface_options import PLAIN
-from jointbench.station.pipeline.surface_stages import SurfaceChain, with_band
+from jointbench.station.pipeline.surface_options import PLAIN, SurfaceOptions
+from jointbench.station.pipeline.surface_stages import (
+    SurfaceChain,
+    with_band,
+    with_texture,
+)
 from jointbench.station.results.results_beside import StoredResults
+from jointbench.station.roughness.texture_request import TextureRequest
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.terminal import working
+
+_STANDARD = SurfaceOptions(texture=TextureRequest())
+"""A report shows the standard parameters with default settings."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,9 +113,10 @@ def analyse_session(
         )
         preloads = _modes(judged or (), settings, stored, run, remarks)
     with working("fitting surfaces"):
-        surfaces = tuple(
-            with_band(one, PLAIN) for one in surface_stages(session.surfaces, run)
-        )
+        plain = surface_stages(session.surfaces, run)
+        fitted = [with_band(one, PLAIN) for one in plain]
+        pairs = zip(fitted, session.surfaces, strict=True)
+        surfaces = tuple(with_texture(one, given, _STANDARD) for one, given in pairs)
     with working("predicting and identifying the joint"):
         contact = _contact(surfaces, model, run, remarks)
         preloads = tuple(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from jointbench.acquisition.records.session import software_version
 from jointbench.station.pipeline.roughness_words import HEADING, roughness_words
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.roughness.texture_figures import texture_items
 from jointbench.station.screen.band_limited_words import COLUMNS as BAND_COLUMNS
 from jointbench.station.screen.band_limited_words import band_lines, band_rows
 from jointbench.station.screen.figures import axis, figure
@@ -32,6 +33,7 @@ def surface_section(chains: Sequence[SurfaceChain]) -> Section:
         items += _shown(chain, number)
     items += [_structure_plot(chains), _slope_plot(chains), _table(chains)]
     items += [_band_table(chains), _instrument_table(chains)]
+    items += texture_items([(c.surface.name, c.texture) for c in chains])
     items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
     items += [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
     items += [
