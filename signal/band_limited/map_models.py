@@ -30,6 +30,8 @@ _START_ROLL_OFFS = (0.03, 0.3)
 """Roll-offs over the length from which the search starts [-]."""
 _SMALL = {BLUR: 0.3, NOISE: 0.1}
 """Blur [samples^2] and noise [-] from which the search starts."""
+_FAR = 20.0
+"""Largest logarithm of density between directions [-]."""
 _TURNS = 4
 """Angles from which the search for a lay starts, besides the one by moments [-]."""
 _CLEAR_START = 1.15
@@ -197,12 +199,13 @@ def _lays(likelihood: MapLikelihood, plain: MapMaximum) -> list[tuple[float, flo
     steepness = 1 + float(plain.parameters[HURST])
     found = np.zeros(3)
     for _ in range(6):
-        rest = share * np.exp(-found @ rates) - 1
-        found += np.linalg.solve((rates * count) @ rates.T, rates @ (count * rest))
+        rest = share * np.exp(-np.clip(found @ rates, -_FAR, _FAR)) - 1
+        step = np.linalg.solve((rates * count) @ rates.T, rates @ (count * rest))
+        found += np.clip(step, -1, 1)
     # More power across the lay: ln density falls by the steepness times ln ratio.
-    wide = float(np.hypot(found[1], found[2])) / steepness
+    wide = min(float(np.hypot(found[1], found[2])) / steepness, 3.0)
     angle = 0.5 * float(np.arctan2(found[2], found[1])) + np.pi / 2
-    first = (angle, min(wide, 3.0))
+    first = (angle, wide)
     if np.exp(wide) > _CLEAR_START:
         return [first]
     return [first, *((k * np.pi / _TURNS, 0.3) for k in range(_TURNS))]

@@ -52,6 +52,7 @@ from jointbench.station.screen.band_limited_words import (
     band_rows,
 )
 from jointbench.station.screen.page import write_report
+from jointbench.station.screen.surface_kind_words import kind_lines
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.value_text import engineering, with_sd
 
@@ -137,13 +138,13 @@ def _show_bands(
     screen: Console, chains: Sequence[SurfaceChain], pooled: Pooled | None
 ) -> None:
     """Print the band-limited surface of each chain, and of all profiles as one."""
-    found = [(c.surface.name, c.band, c.no_band) for c in chains]
+    found = [(c.surface.name, c.band, c.no_band, c.kinds) for c in chains]
     if pooled is not None:
-        found.append((pooled.structure.name, pooled.band, None))
-    rows = [row for name, band, _ in found for row in band_rows(name, band)]
+        found.append((pooled.structure.name, pooled.band, None, None))
+    rows = [row for name, band, *_ in found for row in band_rows(name, band)]
     screen.print(table(TITLE, COLUMNS, rows, words=TEXT_COLUMNS))
-    for name, band, reason in found:
-        for line in band_lines(band, reason):
+    for name, band, reason, kinds in found:
+        for line in (*band_lines(band, reason), *kind_lines(kinds)):
             screen.print(f"  {name}: {line}", markup=False)
 
 

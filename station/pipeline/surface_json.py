@@ -12,6 +12,7 @@ from jointbench.station.pipeline.roughness_words import roughness_json
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 from jointbench.station.roughness.texture_words import answer_json
 from jointbench.station.screen.band_limited_words import band_json
+from jointbench.station.screen.surface_kind_words import kinds_json
 
 
 def surface_json(chain: SurfaceChain) -> dict[str, object]:
@@ -21,6 +22,7 @@ def surface_json(chain: SurfaceChain) -> dict[str, object]:
         **fit_json(chain.surface.name, chain.fit, said),
         "remedy": chain.remedy,
         "band_limited": band_json(chain.band, chain.no_band),
+        "kinds": kinds_json(chain.kinds),
         "spectrum": spectrum_json(chain.surface),
         **_texture_json(chain),
         **dict(chain.beside.keys),

@@ -8,6 +8,11 @@ from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import BandLimitedFit
+from jointbench.signal.band_limited.surface_kinds import (
+    SurfaceKinds,
+    not_one_band,
+    surface_kinds,
+)
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.signal.surface.form_removal import mask_outliers
@@ -32,6 +37,7 @@ from jointbench.station.roughness.texture_request import (
     texture_answer,
 )
 from jointbench.station.screen.band_limited_words import qualified
+from jointbench.station.screen.surface_kind_words import kind_lines
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,6 +53,7 @@ class SurfaceChain:
             where none was looked for.
         band: the band-limited surface; None where none was fitted.
         no_band: why none was fitted.
+        kinds: marks, bends and directions beside the band; None where none was fitted.
         texture: standard parameters; None where they are not asked for.
     """
 
@@ -57,6 +64,7 @@ class SurfaceChain:
     remedy: str | None = None
     band: BandLimitedFit | None = None
     no_band: str | None = None
+    kinds: SurfaceKinds | None = None
     texture: TextureAnswer | None = None
 
 
@@ -111,8 +119,15 @@ def with_band(chain: SurfaceChain, asked: SurfaceOptions) -> SurfaceChain:
     except (BadData, UsageError) as error:
         return replace(chain, no_band=str(error))
     verdict, reason = qualified(chain.fit, band)
+    kinds = surface_kinds(chain.surface, band)
+    names = kind_lines(kinds)
+    if names:
+        band = not_one_band(band, names[0])
+    if names and verdict == SurfaceVerdict.FRACTAL.value:
+        # One power law does not describe a surface with marks or two processes.
+        verdict, reason = SurfaceVerdict.BAND.value, f"{reason}; {names[0]}"
     fit = replace(chain.fit, verdict=SurfaceVerdict(verdict), reason=reason)
-    return replace(chain, band=band, fit=fit)
+    return replace(chain, band=band, fit=fit, kinds=kinds)
 
 
 def chain_cautions(chain: SurfaceChain) -> tuple[str, ...]:

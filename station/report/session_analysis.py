@@ -24,8 +24,12 @@ from jointbench.station.pipeline.joint_stages import (
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun
-from jointbench.station.pipeline.surface_options import SurfaceOptions
-from jointbench.station.pipeline.surface_stages import SurfaceChain, with_texture
+from jointbench.station.pipeline.surface_options import PLAIN, SurfaceOptions
+from jointbench.station.pipeline.surface_stages import (
+    SurfaceChain,
+    with_band,
+    with_texture,
+)
 from jointbench.station.results.results_beside import StoredResults
 from jointbench.station.roughness.texture_request import TextureRequest
 from jointbench.station.schemas.bench_model import BenchModel
@@ -110,7 +114,8 @@ def analyse_session(
         preloads = _modes(judged or (), settings, stored, run, remarks)
     with working("fitting surfaces"):
         plain = surface_stages(session.surfaces, run)
-        pairs = zip(plain, session.surfaces, strict=True)
+        fitted = [with_band(one, PLAIN) for one in plain]
+        pairs = zip(fitted, session.surfaces, strict=True)
         surfaces = tuple(with_texture(one, given, _STANDARD) for one, given in pairs)
     with working("predicting and identifying the joint"):
         contact = _contact(surfaces, model, run, remarks)

@@ -19,6 +19,7 @@ from jointbench.station.screen.page_parts import (
     Text,
 )
 from jointbench.station.screen.surface_figures import height_plot, spectrum_plots
+from jointbench.station.screen.surface_kind_words import kind_lines
 from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
 from jointbench.station.screen.value_text import engineering, with_sd
 
@@ -38,7 +39,10 @@ def surface_section(chains: Sequence[SurfaceChain]) -> Section:
     items += [
         Text(f"{c.surface.name}: {said}")
         for c in chains
-        for said in band_lines(c.band, c.no_band or "none was asked for")
+        for said in (
+            *band_lines(c.band, c.no_band or "none was asked for"),
+            *kind_lines(c.kinds),
+        )
     ]
     return Section("surfaces", "Surfaces", tuple(items))
 

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: MIT
+"""What a surface is that one self-affine band does not describe."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.surfaces import Areal, Surface
+from jointbench.signal.band_limited.band_records import BandLimitedFit, RollOffVerdict
+from jointbench.signal.band_limited.map_sample import map_sample
+from jointbench.signal.band_limited.spectrum_sections import spectrum_sections
+from jointbench.signal.surface.levelling import level
+from jointbench.signal.surface.periodic_marks import PeriodicMarks, periodic_marks
+
+_LEAST_GAIN = 25.0
+"""Least fall of chi2 by a bend between two power laws [-]."""
+_LEAST_BEND = 0.5
+"""Least change of the slope of the spectrum at a bend [-]: of H by a quarter."""
+_SIDE = 2.5
+"""Least ratio of wavelengths on each side of a bend [-]."""
+_FLATTEST = 1.1
+"""Flattest slope of the spectrum of a power law [-]: H = 0.05."""
+_FEWEST = 10
+"""Least bins of a spectrum [-]."""
+_SKEWED = 0.8
+"""Skewness of heights from which two processes shaped them [-]."""
+_OF_SKEWNESS = 6.0
+"""Variance of the skewness of Gaussian heights times their number [-]."""
+_CLEAR = 4.0
+"""Skewness over its scatter from which it is no chance [-]."""
+_TURNS = 36
+"""Directions of the search for a second lay [-]."""
+_SECOND = 0.28
+"""Least height of a second lay over the first, above the valley between [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bend:
+    """Two power laws of one spectrum.
+
+    Attributes:
+        wavelength: at which they meet [m].
+        hurst_short: H of shorter waves [-].
+        hurst_long: H of longer waves [-].
+    """
+
+    wavelength: float
+    hurst_short: float
+    hurst_long: float
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceKinds:
+    """What is found on a surface beside a self-affine band.
+
+    Attributes:
+        marks: that repeat; None without.
+        bend: between two power laws; None without.
+        directions: in which two sets of scratches run [rad]; empty without.
+        skewness: of the levelled heights [-].
+        two_processes: whether the heights are as skewed as two processes leave them.
+    """
+
+    marks: PeriodicMarks | None
+    bend: Bend | None
+    directions: tuple[float, ...]
+    skewness: float
+    two_processes: bool
+
+
+def surface_kinds(surface: Surface, fit: BandLimitedFit | None) -> SurfaceKinds:
+    """Return what is found on a surface beside a self-affine band.
+
+    Args:
+        surface: as it was fitted.
+        fit: of it.
+    """
+    marks = periodic_marks(surface)
+    directions = () if not isinstance(surface, Areal) else _two_directions(surface)
+    bend = None
+    if fit is not None and marks is None and not directions:
+        bend = _bend(surface, fit)
+    skewness, sure = _skewness(surface)
+    return SurfaceKinds(marks, bend, directions, skewness, sure)
+
+
+def not_one_band(fit: BandLimitedFit, said: str) -> BandLimitedFit:
+    """Return a fit without H and roll-off where a surface has no single power law.
+
+    A roll-off that was named stays: marks and crossing directions leave it.
+
+    Args:
+        fit: of the surface.
+        said: what it is instead.
+    """
+    if fit.verdict in {RollOffVerdict.NO_BAND, RollOffVerdict.SATURATED}:
+        return fit
+    return replace(
+        fit,
+        verdict=RollOffVerdict.NO_BAND,
+        reason=f"{said}; {fit.reason}",
+        hurst=None,
+        roll_off_beyond=None,
+        short_cut=None,
+    )
+
+
+def _bend(surface: Surface, fit: BandLimitedFit) -> Bend | None:
+    """Return two power laws that describe a spectrum where one does not."""
+    sections = spectrum_sections(surface, fit)
+    if len(sections) != 1 or fit.moments is None:
+        return None
+    one = sections[0]
+    inside = (one.wavelength >= fit.moments.shortest) & (
+        one.wavelength <= 0.5 * fit.moments.longest
+    )
+    if np.count_nonzero(inside) < _FEWEST:
+        return None
+    place = -np.log(one.wavelength[inside])
+    weight = np.sqrt(one.count[inside])
+    # The mean of ln of a gamma variable.
+    value = np.log(one.measured[inside]) + 0.5 / one.count[inside]
+    line = np.stack([np.ones_like(place), place])
+    # Both laws must beat the fitted surface as well, roll-off and short cut included.
+    other, _ = _left(line, value, weight)
+    if one.fitted is not None:
+        rest = (value - np.log(one.fitted[inside])) * weight
+        other = min(other, float(rest @ rest))
+    best, found = _LEAST_GAIN, None
+    edge = np.log(_SIDE)
+    extra = 2.0 if fit.mapped else 1.0
+    for knot in place[(place > place.min() + edge) & (place < place.max() - edge)]:
+        hinge = np.vstack([line, np.maximum(0.0, place - knot)])
+        left, at = _left(hinge, value, weight)
+        slopes = -at[1], -(at[1] + at[2])
+        # A level spectrum at long waves is a roll-off, a falling slope a short cut.
+        possible = min(slopes) > _FLATTEST + extra - 1 and max(slopes) < extra + 2.2
+        gain = (other - left) / max(1.0, left / value.size)
+        if possible and abs(at[2]) > _LEAST_BEND and gain > best:
+            best = gain
+            short, long = (0.5 * (s - extra) for s in (slopes[1], slopes[0]))
+            found = Bend(float(np.exp(-knot)), float(short), float(long))
+    return found
+
+
+def _left(
+    design: FloatArray, value: FloatArray, weight: FloatArray
+) -> tuple[float, FloatArray]:
+    solved = np.linalg.lstsq((design * weight).T, value * weight)[0]
+    found = np.asarray(solved, dtype=np.float64)
+    rest = (value - found @ design) * weight
+    return float(rest @ rest), found
+
+
+def _skewness(surface: Surface) -> tuple[float, bool]:
+    """Return the skewness of levelled heights and whether it is that of two processes.
+
+    As many heights are independent as lines cross their mean, of a map in both
+    directions.
+    """
+    flat = level(surface)
+    heights = flat.heights[flat.valid]
+    sd = float(np.std(heights))
+    if sd == 0:
+        return 0.0, False
+    skewness = float(np.mean(((heights - heights.mean()) / sd) ** 3))
+    above = np.atleast_2d(flat.heights > 0)
+    number = 1.0
+    for lines in (above, above.T) if isinstance(surface, Areal) else (above,):
+        number *= max(1.0, np.count_nonzero(np.diff(lines, axis=1)) / len(lines))
+    scatter = float(np.sqrt(_OF_SKEWNESS / number))
+    return skewness, abs(skewness) > max(_SKEWED, _CLEAR * scatter)
+
+
+def _two_directions(areal: Areal) -> tuple[float, ...]:
+    """Return two directions in which scratches run, none for one lay or none."""
+    sample = map_sample(areal)
+    if sample is None:
+        return ()
+    turn = np.arctan2(sample.down, sample.along) + np.pi / 2
+    radius = np.hypot(sample.along, sample.down)
+    label = np.minimum((turn / np.pi * _TURNS).astype(np.int64), _TURNS - 1)
+    ring = np.floor(np.log(radius) / 0.3).astype(np.int64)
+    ring -= ring.min()
+    # Power over the mean of its ring: each wavelength has one vote per ordinate.
+    weight = sample.count
+    mean = np.bincount(ring, weight * sample.power) / np.maximum(
+        np.bincount(ring, weight), 1e-9
+    )
+    share = np.bincount(label, weight * sample.power / mean[ring], minlength=_TURNS)
+    number = np.maximum(np.bincount(label, weight, minlength=_TURNS), 1e-9)
+    profile = share / number
+    profile = (np.roll(profile, 1) + 2 * profile + np.roll(profile, -1)) / 4
+    return _two_peaks(profile)
+
+
+def _two_peaks(profile: FloatArray) -> tuple[float, ...]:
+    """Return the directions of two peaks with a valley between on both sides."""
+    peaks = np.flatnonzero(
+        (profile >= np.roll(profile, 1)) & (profile > np.roll(profile, -1))
+    )
+    order = peaks[np.argsort(-profile[peaks])]
+    if order.size < 2:
+        return ()
+    first, second = int(order[0]), int(order[1])
+    low, high = sorted((first, second))
+    valleys = [
+        profile[low : high + 1].min(),
+        min(profile[high:].min(), profile[: low + 1].min()),
+    ]
+    rise = profile[second] - max(valleys)
+    if rise < _SECOND * (profile[first] - max(valleys)) or profile[first] < 1.5:
+        return ()
+    # Power is across a lay; sectors begin at -90 degrees.
+    found = [(np.pi * (k + 0.5) / _TURNS) for k in (low, high)]
+    return tuple(sorted(float((a + np.pi / 2) % np.pi - np.pi / 2) for a in found))
