@@ -127,14 +127,17 @@ def simulate_command(
         typer.Argument(metavar="URL", help="Simulated bench, its speed and its port."),
     ] = "sim:plates?speed=1&interval=2&port=31763",
     module: Annotated[
-        str,
-        typer.Option(help="Module: 9234, 9231, 9250, 9230, 4431, 9215 or 6363."),
-    ] = "",
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Modules, joined by commas: 9234, 9231, 9250, 9230, 4431, 9215, 6363.",
+        ),
+    ] = None,
     debug: Debug = False,
 ) -> None:
     """Serve simulated NI devices over gRPC.
 
-    Any program that uses nidaqmx over gRPC can connect to them. The parameter
+    Programs that use nidaqmx over gRPC can connect. The parameter
     'interval' is the time between hits [s], 'speed' the simulated time per real time
     [-], 'port' the TCP port. 'sim:sine' has a sine at every input instead of a
     specimen. Stop the server with Ctrl-C.
@@ -146,4 +149,4 @@ def simulate_command(
     """
     from jointbench.station.commands.simulate import run_simulate
 
-    run_simulate(bench, module)
+    run_simulate(bench, module or "")
