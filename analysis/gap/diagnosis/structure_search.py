@@ -19,7 +19,11 @@ from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import Candidate
-from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
+from jointbench.analysis.gap.residuals.evaluation_resolutions import (
+    FINE,
+    FULL,
+    Resolution,
+)
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.candidate_starts import CandidateFit, along
@@ -129,9 +133,7 @@ def settled(
         candidates: effects.
         floor: error of the model, as a share of the peak [-].
     """
-    n = bench.base_sd.size
-    terms = split(start, n, candidates)
-    bench = bench.at(start[:n], terms, bench.landing, floor)
+    bench = _met(bench, start, candidates, floor)
     fit = _whole(bench, start, candidates)
     for _ in range(STRUCTURE.settling_rounds):
         landing = bench.landing
@@ -143,8 +145,53 @@ def settled(
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
         if before - fit.cost < least * fit.cost:
             break
+    return bench, _fine(bench, fit.x, candidates, STRUCTURE.fine_iterations)
+
+
+def _met(
+    bench: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    floor: float,
+) -> StructureBench:
+    """Return the bench at a start; with laws, about where its hits landed.
+
+    Laws have approached the records: a fit to hits at their points would move them
+    away again.
+    """
+    n = bench.base_sd.size
+    terms = split(start, n, candidates)
+    bench = bench.at(start[:n], terms, bench.landing, floor)
+    if not bench.nonlinear(candidates):
+        return bench
+    for window in STRUCTURE.landing_windows:
+        landing, _ = bench.landed(start[:n], terms, window)
+        bench = bench.at(start[:n], terms, landing, floor)
+    return bench
+
+
+def _fine(
+    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate], steps: int
+) -> Fit:
+    """Fit whole records with the time integration that is judged.
+
+    Args:
+        bench: all records.
+        x: coordinates.
+        candidates: effects.
+        steps: most steps, if a law is integrated at all.
+    """
     problem = make_problem(bench, candidates)
-    return bench, minimise(problem, fit.x, FULL, iterations=0)
+    if not bench.nonlinear(candidates):
+        return minimise(problem, x, FULL, iterations=0)
+    return minimise(
+        problem,
+        x,
+        FINE,
+        iterations=steps,
+        jacobian_resolution=FULL,
+        exact_slopes=False,
+    )
 
 
 def _whole(
@@ -320,6 +367,8 @@ def _worth_it(carried: Sequence[Fit]) -> list[Fit]:
 
 def _alike(best: _WholeFit, fit: Fit) -> Fit:
     """Return a rival under the whitening of the best fit."""
+    if best.bench.nonlinear(fit.candidates):
+        return _fine(best.bench, fit.x, fit.candidates, 3)
     problem = make_problem(best.bench, fit.candidates)
     return minimise(problem, fit.x, FULL, iterations=3, exact_slopes=False)
 

@@ -128,7 +128,10 @@ class SlopedBench(Protocol):
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
-        """Return d residual / d base, shape (n_rows, n_base)."""
+        """Return d residual / d base, shape (n_rows, n_base).
+
+        A bench may add columns by the coordinates of the effects, all of them.
+        """
         ...
 
 

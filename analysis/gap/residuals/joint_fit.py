@@ -46,7 +46,8 @@ class FitProblem:
     def base_slopes(self, x: FloatArray, resolution: Resolution) -> FloatArray | None:
         """Return the slopes of the residual by the base, shape (n_rows, n_base).
 
-        None if the bench has none in closed form.
+        None if the bench has none of its own. A bench may add columns by the
+        coordinates of the effects, all of them.
         """
         if not isinstance(self.bench, SlopedBench):
             return None

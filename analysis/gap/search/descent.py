@@ -47,7 +47,7 @@ def jacobian_of(
 
     shared = x.size - problem.own
     known = problem.base_slopes(x, resolution)
-    first = 0 if known is None else problem.n_base
+    first = 0 if known is None else known.shape[1]
     if known is not None:
         columns[:first] = known.T
     each(lambda k: difference(first + k), shared - first)

@@ -3,7 +3,10 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.analysis.gap.residuals.fit_records import Blocks
 from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     JointedBodies,
@@ -79,3 +82,22 @@ class HitCampaign:
     nominal: NominalBench
     hits: HitRecords
     remarks: tuple[str, ...] = ()
+
+
+def record_blocks(campaign: HitCampaign) -> Blocks:
+    """Return the records of a campaign as groups of rows."""
+    hits = campaign.hits
+    shape = hits.response.shape
+    labels = tuple(
+        {
+            "level": f"{level:g} N",
+            "hit point": campaign.bodies.points[point].name,
+            "torque": f"{torque:g} N m",
+            "order": f"{k}",
+        }
+        for k, (level, point, torque) in enumerate(
+            zip(hits.level, hits.point, hits.torque, strict=True)
+        )
+    )
+    group = np.repeat(np.arange(shape[0]), shape[1] * shape[2])
+    return Blocks(group, labels, int(hits.response.size), shape, white=False)

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.structure_bench.acting_laws import acting_laws
 from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_bench.closed_modes import closed_modes
 from jointbench.analysis.gap.structure_bench.closed_response import (
     Closure,
     close,
@@ -23,9 +25,7 @@ from jointbench.analysis.gap.structure_bench.landing import (
     point_columns,
 )
 from jointbench.analysis.gap.structure_bench.port_integration import (
-    acting_laws,
     averaging,
-    closed_modes,
     integrate_laws,
 )
 from jointbench.analysis.gap.structure_bench.port_laws import LawForm, law_ports
@@ -163,7 +163,7 @@ def direction_rows(model: HitModel, landing: FloatArray, sd: FloatArray) -> Floa
     A hit beside its point slips other sliders, so the forces of laws are followed.
 
     Args:
-        model: at the landing points.
+        model: at the landing points, as in fits.
         landing: tilts [rad] and offsets [m] of each hit, shape (n_records, 4).
         sd: of the five directions, shape (5,).
 
@@ -174,21 +174,21 @@ def direction_rows(model: HitModel, landing: FloatArray, sd: FloatArray) -> Floa
     rows = np.stack([model.struck(slopes[:, k]) for k in range(sd.size)], axis=1)
     if model.forces is None:
         return rows
-    step, parts = STRUCTURE.landing_step, STRUCTURE.law_slope_parts
-    weights = landing_weights(landing)
-
-    def forces(moved: FloatArray) -> ComplexArray:
-        return law_forces(model.campaign, model.state, model.frame, moved, parts)
-
-    first = forces(weights)
+    step, weights = STRUCTURE.landing_step, landing_weights(landing)
     for k in range(sd.size):
-        change = forces(weights + step * slopes[:, k]) - first
-        rows[:, k] += model.pushed(change / step)
+        moved = weights + step * slopes[:, k]
+        forces = law_forces(model.campaign, model.state, model.frame, moved, fine=False)
+        rows[:, k] += model.pushed((forces - model.forces) / step)
     return rows
 
 
 def hit_model(
-    campaign: HitCampaign, state: JointState, frame: HitFrame, weights: FloatArray
+    campaign: HitCampaign,
+    state: JointState,
+    frame: HitFrame,
+    weights: FloatArray,
+    *,
+    fine: bool = True,
 ) -> HitModel:
     """Close the model at a state, and integrate its laws.
 
@@ -197,6 +197,7 @@ def hit_model(
         state: of the model.
         frame: transforms of the window.
         weights: force columns of each record, shape (n_records, 9).
+        fine: True for the time integration of what is judged, not of fits.
     """
     bodies = campaign.bodies
     columns = [point_columns(p) for p in bodies.points]
@@ -210,7 +211,7 @@ def hit_model(
     )
     forces = None
     if state.laws:
-        forces = law_forces(campaign, state, frame, weights)
+        forces = law_forces(campaign, state, frame, weights, fine=fine)
     return HitModel(campaign, state, frame, closures, forces)
 
 
@@ -234,7 +235,8 @@ def law_forces(
     state: JointState,
     frame: HitFrame,
     weights: FloatArray,
-    parts: int | None = None,
+    *,
+    fine: bool,
 ) -> ComplexArray:
     """Integrate the laws at the ports of a state.
 
@@ -243,18 +245,15 @@ def law_forces(
         state: with laws.
         frame: transforms of the window.
         weights: force columns of each record, shape (n_records, 9).
-        parts: steps of the integration per raw sample; None for those of the laws.
+        fine: True for the steps of what is judged, not of fits.
 
     Returns:
         Transformed forces across the ports, shape (n_records, n_ports, n_lines).
     """
     hits, bodies = campaign.hits, campaign.bodies
     step = hits.filter.step
-    if parts is None:
-        friction = all(law.kind == LawForm.FRICTION for law in state.laws)
-        parts = STRUCTURE.slider_steps if friction else STRUCTURE.law_steps
-        if frame.count < hits.force.shape[1]:
-            parts //= STRUCTURE.window_coarseness
+    friction = all(law.kind == LawForm.FRICTION for law in state.laws)
+    parts = (STRUCTURE.slider_steps if friction else STRUCTURE.law_steps)[fine]
     # Beyond the window: an end of the forces within it would ring back into it.
     length = frame.size * step
     raw = np.zeros((len(hits.raw_force), length))

@@ -5,12 +5,12 @@ import numpy as np
 
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.structure_bench.base_layout import base_layout
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
-from jointbench.analysis.gap.structure_bench.structure_bench import (
-    StructureBench,
+from jointbench.analysis.gap.structure_bench.hit_campaign import (
+    HitCampaign,
     record_blocks,
 )
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
 )

@@ -53,21 +53,28 @@ def law_ports(laws: tuple[PortLaws, ...]) -> tuple[int, ...]:
     return tuple(port for law in laws for port in law.ports)
 
 
-def iwan_sliders(largest: float, power: float) -> tuple[FloatArray, FloatArray]:
+def iwan_sliders(
+    largest: float, power: float, onset: float = 0.0
+) -> tuple[FloatArray, FloatArray]:
     """Return slip displacements [m] and weights of sliders of one Iwan element.
 
     The stiffness below a slip displacement phi is (phi / largest)^power, as in the
-    effect ``iwan`` of lumped joints. Cells are equally wide; a slider sits at the mean
-    slip displacement of its cell.
+    effect ``iwan`` of lumped joints. All of it below the onset is one slider, so that
+    smaller motions do not slip. Further cells are equally wide; a slider sits at the
+    mean slip displacement of its cell.
 
     Args:
         largest: slip displacement [m].
         power: chi + 2 of Segalman's density [-], above 0.
+        onset: end of the first cell over the largest slip displacement [-], below 1; 0
+            for a cell as wide as the others.
 
     Source:
         Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1).
     """
-    edges = np.linspace(0.0, 1.0, STRUCTURE.sliders + 1)
+    count = STRUCTURE.sliders
+    first = onset if onset > 0.0 else 1.0 / count
+    edges = np.concatenate([[0.0], np.linspace(first, 1.0, count)])
     weights = np.diff(edges**power)
     means = np.diff(edges ** (power + 1.0)) / weights * power / (power + 1.0)
     return largest * means, weights

@@ -7,18 +7,24 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
-from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
+from jointbench.analysis.gap.residuals.evaluation_resolutions import (
+    FULL,
+    Resolution,
+)
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.hit_campaign import (
+    HitCampaign,
+    record_blocks,
+)
 from jointbench.analysis.gap.structure_bench.hit_frames import (
     HitFrame,
     hit_frame,
@@ -28,10 +34,10 @@ from jointbench.analysis.gap.structure_bench.hit_response import (
     HitModel,
     direction_rows,
     hit_model,
-    law_forces,
 )
 from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
 from jointbench.analysis.gap.structure_bench.landing import landing_weights
+from jointbench.analysis.gap.structure_bench.law_slopes import LawSlopes
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_state,
@@ -162,10 +168,12 @@ class StructureBench:
         values = [values_of(self, term) for term in terms]
         return structure_state(self.entries, self.campaign, bare, terms, values)
 
-    def nonlinear(self, candidates: Sequence[Candidate]) -> bool:
-        """Return whether any of the effects is integrated in time."""
+    def nonlinear(
+        self, candidates: Sequence[Candidate], *, every: bool = False
+    ) -> bool:
+        """Return whether any of the effects, or every one, is integrated in time."""
         names = {e.effect.name for e in self.entries if e.nonlinear}
-        return any(c.effect.name in names for c in candidates)
+        return (all if every else any)(c.effect.name in names for c in candidates)
 
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""
@@ -186,7 +194,9 @@ class StructureBench:
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return model minus measurement over sigma, whitened, shape (n_rows,)."""
-        modelled = self.response(base, terms, resolution.window)
+        fine = resolution.oversampling > FULL.oversampling
+        model = self.model(base, terms, resolution.window, fine=fine)
+        modelled = model.response(landing_weights(self.landing))
         count = modelled.shape[2]
         r = modelled - self.campaign.hits.response[:, :, :count]
         if self.directions is not None:
@@ -196,13 +206,23 @@ class StructureBench:
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
-        """Return the slopes of the residual by the base, shape (n_rows, n_base)."""
+        """Return the slopes of the residual by the base, shape (n_rows, n).
+
+        If all effects are nonlinear laws, columns by their coordinates follow: the
+        linear response does not change with them.
+        """
         weights = landing_weights(self.landing)
         model = self.model(base, terms, resolution.window)
-        changes = self._law_slopes(model, base, terms)
-        rows = model.slopes(weights, self.layout, changes)
+        if model.forces is None:
+            rows = model.slopes(weights, self.layout)
+        else:
+            laws = LawSlopes(self, model.frame, model.forces, base, terms)
+            rows = model.slopes(weights, self.layout, laws.by_base())
+            if self.nonlinear([t.candidate for t in terms], every=True):
+                added = [model.pushed(own)[:, None] for own in laws.by_terms()]
+                rows = np.concatenate([rows, *added], axis=1)
         white = self._whitened(rows)
-        return white.transpose(0, 2, 1).reshape(-1, len(self.layout.names))
+        return white.transpose(0, 2, 1).reshape(-1, rows.shape[1])
 
     def refine(
         self,
@@ -238,8 +258,7 @@ class StructureBench:
         peak = np.abs(self.campaign.hits.response).max(axis=2)
         known = np.hypot(self.campaign.hits.noise, floor * peak)
         sigma = known * np.sqrt(self.coherence)
-        kept = _frames_of(self.kept)
-        return replace(moved, floor=floor, sigma=sigma, directions=rows, kept=kept)
+        return replace(moved, floor=floor, sigma=sigma, directions=rows)
 
     def landed(
         self, base: FloatArray, terms: Sequence[Term], window: float | None = None
@@ -297,34 +316,17 @@ class StructureBench:
             self.kept[key] = make()
         return self.kept[key]
 
-    def _law_slopes(
-        self, model: HitModel, base: FloatArray, terms: Sequence[Term]
-    ) -> list[ComplexArray]:
-        """Return slopes of the forces of laws by the base.
-
-        The forces are followed: a slider that sticks moves with the joint, one that
-        slips holds its force, so a small difference is their slope. Held forces make
-        a fit to whole records creep, since the base moves the phase of every slip.
-        """
-        if model.forces is None:
-            return []
-        weights, step = landing_weights(self.landing), STRUCTURE.law_slope_step
-
-        def forces(x: FloatArray) -> ComplexArray:
-            state, parts = self.state(x, terms), STRUCTURE.law_slope_parts
-            return law_forces(self.campaign, state, model.frame, weights, parts)
-
-        first = forces(base)
-        return [
-            (forces(base + step * unit) - first) / step for unit in np.eye(base.size)
-        ]
-
     def model(
-        self, base: FloatArray, terms: Sequence[Term], window: float | None
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        window: float | None,
+        *,
+        fine: bool = False,
     ) -> HitModel:
         """Return the model at a state; the last one of a window is kept."""
         key = (base.tobytes(), *((t.candidate, t.coordinates.tobytes()) for t in terms))
-        place = ("model", window_count(self.campaign.hits, window))
+        place = ("model", window_count(self.campaign.hits, window), fine)
         last = self.kept.get(place)
         if last is not None and last[0] == key:
             kept: HitModel = last[1]
@@ -334,6 +336,7 @@ class StructureBench:
             self.state(base, terms),
             self.frame(window),
             landing_weights(self.landing),
+            fine=fine,
         )
         self.kept[place] = key, found
         return found
@@ -370,22 +373,3 @@ class StructureBench:
 def _frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:
     """Return what does not depend on where hits landed."""
     return {key: value for key, value in kept.items() if key[0] == "frame"}
-
-
-def record_blocks(campaign: HitCampaign) -> Blocks:
-    """Return the records of a campaign as groups of rows."""
-    hits = campaign.hits
-    shape = hits.response.shape
-    labels = tuple(
-        {
-            "level": f"{level:g} N",
-            "hit point": campaign.bodies.points[point].name,
-            "torque": f"{torque:g} N m",
-            "order": f"{k}",
-        }
-        for k, (level, point, torque) in enumerate(
-            zip(hits.level, hits.point, hits.torque, strict=True)
-        )
-    )
-    group = np.repeat(np.arange(shape[0]), shape[1] * shape[2])
-    return Blocks(group, labels, int(hits.response.size), shape, white=False)

@@ -40,8 +40,8 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
 def _slide(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
-    share, largest, power, preload = (float(v) for v in values)
-    slips, weights = iwan_sliders(largest, power)
+    share, largest, power, preload, onset = (float(v) for v in values)
+    slips, weights = iwan_sliders(largest, power, onset)
     ports = tangential_ports(state, tuple(range(state.bolt.size)))
     laws = PortLaws(ports, share, slips, weights, preload=preload)
     return replace(state, laws=(*state.laws, laws))
@@ -77,6 +77,7 @@ def _iwan(values: FloatArray) -> tuple[Reported, ...]:
         Reported("phimax", "m", float(values[1])),
         Reported("chi", "-", float(values[2] - 2.0)),
         Reported("torque_exponent", "-", float(values[3])),
+        Reported("onset", "-", float(values[4])),
     )
 
 
@@ -126,6 +127,15 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
                     prior=(1.6, 0.3),
                 ),
                 _PRELOAD,
+                Parameter(
+                    "onset",
+                    "-",
+                    lower=0.005,
+                    upper=0.5,
+                    starts=(0.05,),
+                    transform=Transform.LOG,
+                    prior=(0.05, 1.5),
+                ),
             ),
             _SEGALMAN,
             report=_iwan,

@@ -25,24 +25,20 @@ class StructureSettings:
         "with 64 samples a window at 2 kHz was wrong by 8 % at its end, with 240 by "
         "less than the floor",
     )
-    slider_steps: int = numerical(
-        4,
+    slider_steps: tuple[int, int] = numerical(
+        (1, 4),
         "steps/sample",
-        "steps of the time integration per raw sample where all laws are friction",
-        "within 1e-4 of the peak of an adaptive integrator (a test); 2 steps 1.3e-4, 1 "
-        "step 5e-4",
+        "steps of the time integration per raw sample where all laws are friction: in "
+        "fits, and in what is judged",
+        "errors over the peak: 9e-5 and 6e-6 for slip of whole bolts, 2e-5 and 2e-6 "
+        "for micro-slip",
     )
-    law_steps: int = numerical(
-        8,
+    law_steps: tuple[int, int] = numerical(
+        (2, 8),
         "steps/sample",
         "the same with a stop or another law",
-        "within 1e-4 as well (a test); 4 steps 3e-4",
-    )
-    window_coarseness: int = numerical(
-        2,
-        "-",
-        "divisor of these steps in windows of the search",
-        "1.3e-4 and 3e-4, below the floor",
+        "errors over the peak: 4e-4 and 2e-5 for a stop, 1.2e-3 and 2e-5 for a cubic "
+        "spring that makes 80 % of the response",
     )
     slider_corrections: int = numerical(
         3, "-", "corrections of the forces of sliders in one step", "a prototype"
@@ -60,20 +56,29 @@ class StructureSettings:
         "samples between two questions whether a slider can slip again",
         "a question takes as long as a step",
     )
+    hits_at_once: int = numerical(
+        24,
+        "hits",
+        "hits that are integrated side by side",
+        "one product moves all ports and modes of them; soft hits end sooner",
+    )
     sliders: int = numerical(
         24,
         "sliders",
         "sliders of an Iwan element at a port",
         "a prototype on 24 campaigns",
     )
-    law_slope_parts: int = numerical(
-        1,
-        "steps/sample",
-        "steps of the time integration per raw sample for slopes of the forces of laws",
-        "forces within 5e-4; a slope need not be better, and costs a quarter",
-    )
     law_slope_step: float = numerical(
-        1e-5, "-", "difference step of a base coordinate for them"
+        1e-5,
+        "-",
+        "difference step of a coordinate for slopes of the forces of laws",
+        "above the rounding of a time integration, below the width of a slip",
+    )
+    least_law_value: float = numerical(
+        1e-2,
+        "-",
+        "value of a coordinate of a law below which this step does not shrink with it",
+        "as in other fits",
     )
     landing_step: float = numerical(
         1e-4, "sd", "difference step of a direction of a hit for them"
@@ -145,18 +150,31 @@ class StructureSettings:
         "chi2/dof above which hits are not expanded about where they landed",
         "far from the records the residual is not one of landing",
     )
-    law_windows: tuple[float, float] = numerical(
-        (0.02, 0.06),
+    law_windows: tuple[float | None, ...] = numerical(
+        (0.02, 0.06, None),
         "s",
         "windows in which a fit with nonlinear laws approaches whole records, on one "
-        "record of each condition",
-        "a step in whole records costs ten times as much",
+        "record of each condition; None for whole records",
+        "a step in all whole records costs twenty times as much as one in 20 ms",
+    )
+    landing_windows: tuple[float, float] = numerical(
+        (0.02, 0.06),
+        "s",
+        "windows in which such a fit meets all hits where they landed, one after the "
+        "other, before it is fitted to all whole records",
+        "hits beside their point slip other sliders, so the second is more exact",
     )
     law_rounds: int = numerical(
         3, "rounds", "most rounds of such a fit with where the hits landed"
     )
     law_iterations: int = numerical(
         12, "steps", "most steps of a fit with nonlinear laws in one of these windows"
+    )
+    fine_iterations: int = numerical(
+        2,
+        "steps",
+        "steps of such a fit at the end, with the time integration that is judged",
+        "the coarser one moves parameters by a part of their sd",
     )
     whole_iterations: int = numerical(
         8, "steps", "most steps of a fit to whole records in one round"

@@ -119,6 +119,31 @@ def test_laws_at_four_bolts_are_those_of_an_integrator(
     assert distance(found, judged(made, replace(linear, laws=(slides, *others)))) < 1e-4
 
 
+def test_fits_take_coarser_steps_than_what_is_judged() -> None:
+    """In fits, friction is within 2e-4 of the peak and other laws within 2e-3."""
+    made, weights = campaign(), landing_weights(LANDING)
+    frame = hit_frame(made.hits, made.hits.force.shape[1])
+    slips, shares = iwan_sliders(1e-6, 1.6)
+    slides = PortLaws((0, 1, 3, 4), 0.5, slips, shares)
+    for laws, allowed in (((slides,), 2e-4), (FOUR_LAWS, 2e-3)):
+        state = replace(state_at(made), laws=laws)
+        coarse, fine = (
+            hit_model(made, state, frame, weights, fine=fine).response(weights)[0]
+            for fine in (False, True)
+        )
+        assert 1e-6 < distance(coarse, fine) < allowed
+
+
+def test_sliders_below_the_onset_slip_together() -> None:
+    """Their weight and mean slip displacement are those of the density."""
+    slips, weights = iwan_sliders(2e-6, 1.5, 0.2)
+    assert weights.sum() == pytest.approx(1.0)
+    assert weights[0] == pytest.approx(0.2**1.5)
+    assert slips[0] == pytest.approx(2e-6 * 0.2 * 1.5 / 2.5)
+    plain, shares = iwan_sliders(2e-6, 1.5)
+    assert weights @ slips == pytest.approx(shares @ plain)
+
+
 CHANGES: dict[str, dict[str, Any]] = {
     "mass": {"attached": (Attached(0, 0.4),)},
     "spring": {"attached": (Attached(0, 0.0, stiffness=2e6, normal=True),)},

@@ -10,6 +10,7 @@ from hit_campaigns import Hidden, write_campaign
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.search.screening import start_grid
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
@@ -22,6 +23,7 @@ from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 PLACES = np.array([[0.1, 0.1], [0.3, 0.1], [0.3, 0.2], [0.1, 0.2]])
 NAMES = tuple(entry.effect.name for entry in STRUCTURE_CATALOGUE)
+LANDING = np.zeros((4, 4))
 RIGID = {"joint_compliance_normal", "joint_compliance_tangential"}
 
 
@@ -81,3 +83,26 @@ def _finite(bench: StructureBench, candidate: Candidate, shape: FloatArray) -> b
         ]
     )
     return all(np.isfinite(one.value) for one in candidate.effect.reported(values))
+
+
+@pytest.mark.parametrize("name", ["microslip", "cubic"])
+def test_slopes_by_a_law_are_those_of_differences(
+    bench: StructureBench, name: str
+) -> None:
+    """The columns of a law, from its forces alone, agree with the whole model."""
+    candidate = next(c for c in bench.candidates if c.effect.name == name)
+    shape = start_grid(candidate)[-1]
+    u = np.array([candidate.effect.parameters[0].encode(0.3), *shape[1:]])
+    base, window = np.zeros(bench.base_sd.size), Resolution(0.003)
+    few = bench.chosen(np.arange(4)).at(base, (Term(candidate, u),), LANDING, 1e-3)
+    slopes = few.slopes(base, (Term(candidate, u),), window)
+    assert slopes.shape[1] == base.size + u.size
+    for k in range(u.size):
+        step = np.where(np.arange(u.size) == k, 1e-5, 0.0)
+        up, down = (
+            few.residual(base, (Term(candidate, u + sign * step),), window)
+            for sign in (1.0, -1.0)
+        )
+        difference = (up - down) / 2e-5
+        apart = np.abs(slopes[:, base.size + k] - difference).max()
+        assert apart < 0.02 * np.abs(difference).max(), k

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Complex modes of the closed structure, in which laws at its joints are integrated."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.analysis.gap.structure_bench.joint_state import JointState
+from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClosedModes:
+    """Complex modes of the closed structure, those with Im >= 0.
+
+    Attributes:
+        poles: [rad/s], shape (n_poles,).
+        inputs: modal force per force on a free mode, shape (n_poles, n_modes).
+        outputs: motion of the free modes per mode; a real motion is the real part of
+            the sum over the poles, shape (n_modes, n_poles).
+    """
+
+    poles: ComplexArray
+    inputs: ComplexArray
+    outputs: ComplexArray
+
+
+def closed_modes(
+    bodies: JointedBodies, state: JointState, torque: float
+) -> ClosedModes:
+    """Return the complex modes of bodies closed by their joints.
+
+    Rigid directions are constraints: the free modes move in their null space only.
+
+    Args:
+        bodies: modes and rows.
+        state: of the model.
+        torque: factor of the torque on stiffness and damping of the bolts [-].
+
+    Raises:
+        ValueError: the joint rocks, which has no stiffness of its own.
+    """
+    if state.rocking is not None:
+        raise ValueError("a rocking compliance is not integrated in time")
+    m, c, k = _matrices(bodies, state, torque)
+    held = [d for d in range(3) if state.compliance[d] == 0.0]
+    rows = bodies.bolts[:, held].reshape(-1, bodies.omega.size)
+    free = _null_space(rows)
+    m, c, k = (free.T @ x @ free for x in (m, c, k))
+    n = len(m)
+    inverse = np.linalg.inv(m)
+    system = np.zeros((2 * n, 2 * n))
+    system[:n, n:] = np.eye(n)
+    system[n:, :n], system[n:, n:] = -inverse @ k, -inverse @ c
+    poles, vectors = np.linalg.eig(system)
+    left = np.linalg.inv(vectors)[:, n:] @ inverse @ free.T
+    kept = poles.imag >= 0.0
+    twice = np.where(poles[kept].imag > 0.0, 2.0, 1.0)
+    return ClosedModes(poles[kept], left[kept], (free @ vectors[:n])[:, kept] * twice)
+
+
+def _matrices(
+    bodies: JointedBodies, state: JointState, torque: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return mass, damping and stiffness of the free modes with elastic joints."""
+    omega = state.omega(bodies)
+    mass = state.mass[bodies.body]
+    m = np.diag(mass)
+    c = np.diag(2.0 * state.loss[bodies.body] * omega * mass)
+    k = np.diag(omega**2 * mass)
+    for i, bolt in enumerate(bodies.bolts):
+        factor = state.bolt[i] * torque
+        for d in range(3):
+            if state.compliance[d] > 0.0:
+                square = factor * np.outer(bolt[d], bolt[d])
+                k += square / state.compliance[d]
+                c += square * state.damping[d]
+    feet = bodies.feet.reshape(-1, omega.size)
+    k += (state.foot[0] * np.repeat(state.foot_factor, 3) * feet.T) @ feet
+    c += state.foot[1] * feet.T @ feet
+    for one in state.attached:
+        # An oscillator above the band is a mass; below it, its spring holds the place.
+        rows = one.rows(bodies)
+        m += one.mass * rows.T @ rows
+        k += one.stiffness * rows.T @ rows
+    return m, c, k
+
+
+def _null_space(rows: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of the motions without any of the rows."""
+    if not len(rows):
+        return np.eye(rows.shape[1])
+    return np.asarray(scipy.linalg.null_space(rows, rcond=STRUCTURE.constraint_rank))

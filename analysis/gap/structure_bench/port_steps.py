@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""The compiled time integration of modes and laws, hits side by side.
+
+Complex values are held as real and imaginary parts. Hits are the last axis, so that all
+of them are moved by the same instructions; only sliders are side by side themselves.
+"""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.compiled import compiled
+
+_Laws = tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""Kinds, sizes, gaps, slips and weights of the ports."""
+_Steps = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""Factor of a step; what forces at its begin and its end move along straight lines, at
+its end along a parabola, and constant ones."""
+_Ports = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""Drive, motion, velocity, push and instantaneous receptances."""
+
+
+@compiled(fastmath=True)
+def _slide(
+    size: float,
+    sliders: tuple[FloatArray, FloatArray],
+    motion: tuple[FloatArray, FloatArray, FloatArray],
+    stretch: tuple[FloatArray, FloatArray],
+    d: FloatArray,
+) -> None:
+    """Write the force of the sliders of one port, and their stretch.
+
+    Args:
+        size: stiffness of all of them [N/m].
+        sliders: slips and weights, shape (n_sliders,) each.
+        motion: of the port before and after the step, and scale of the slips, shape
+            (n_hits,) each.
+        stretch: before the step, and after it (written), shape (n_hits, n_sliders).
+        d: force beyond the linear spring (written), shape (n_hits,).
+    """
+    slips, weights = sliders
+    old, new, scale = motion
+    before, after = stretch
+    for h in range(d.size):
+        moved, held, own = new[h] - old[h], 0.0, scale[h]
+        for i in range(slips.size):
+            limit = own * slips[i]
+            e = min(max(before[h, i] + moved, -limit), limit)
+            after[h, i] = e
+            held += weights[i] * e
+        d[h] = size * (held - new[h])
+
+
+@compiled(fastmath=True)
+def _port_forces(
+    laws: _Laws,
+    scale: FloatArray,
+    motion: tuple[FloatArray, FloatArray, FloatArray],
+    stretch: tuple[FloatArray, FloatArray],
+    d: FloatArray,
+) -> None:
+    """Write the force of each law, and the stretch of its sliders.
+
+    Args:
+        laws: kinds, sizes, gaps, slips and weights.
+        scale: of the slips of each port, shape (n_ports, n_hits).
+        motion: of the ports before and after the step, and velocity after it.
+        stretch: of the sliders before the step, and after it (written), shape
+            (n_ports, n_hits, n_sliders).
+        d: force of each port (written), shape (n_ports, n_hits).
+    """
+    kinds, sizes, gaps, slips, weights = laws
+    old, new, speed = motion
+    before, after = stretch
+    for p in range(d.shape[0]):
+        size, gap, r, v, out = sizes[p], gaps[p], new[p], speed[p], d[p]
+        if kinds[p] == 0:
+            own = (slips[p], weights[p])
+            _slide(size, own, (old[p], r, scale[p]), (before[p], after[p]), out)
+        elif kinds[p] == 1:
+            for h in range(out.size):
+                out[h] = size * max(r[h] - gap, 0.0)
+        elif kinds[p] == 2:
+            for h in range(out.size):
+                out[h] = size * r[h] * r[h] * r[h]
+        elif kinds[p] == 3:
+            for h in range(out.size):
+                out[h] = size * r[h] * r[h]
+        else:
+            for h in range(out.size):
+                out[h] = size * v[h] * abs(v[h])
+
+
+@compiled(fastmath=True)
+def _rests(
+    steps: _Steps,
+    ports: _Ports,
+    x: FloatArray,
+    sliders: tuple[FloatArray, FloatArray, FloatArray],
+    now: tuple[FloatArray, FloatArray],
+    hit: int,
+) -> bool:
+    """Return whether no slider of a hit can slip again.
+
+    With constant forces each mode decays about its rest, so the sum of its magnitudes
+    bounds the motion of every port from now on.
+
+    Args:
+        steps: of all modes.
+        ports: as in `integrate_hits`.
+        x: modal coordinates without the forces at the end of the step.
+        sliders: slips, stretch, and scale of the slips.
+        now: motion of the ports and their forces, shape (n_ports, n_hits) each.
+        hit: which.
+    """
+    late, gain = steps[3], steps[4]
+    shown, push = ports[1], ports[3]
+    slips, stretch, scale = sliders
+    motion, d = now
+    n_ports, n_poles = shown.shape[0], late.shape[1]
+    centre, reach = np.zeros(n_ports), np.zeros(n_ports)
+    for j in range(n_poles):
+        u, v = 0.0, 0.0
+        for q in range(n_ports):
+            u += push[0, q, j] * d[q, hit]
+            v += push[1, q, j] * d[q, hit]
+        re = gain[0, j] * u - gain[1, j] * v
+        im = gain[0, j] * v + gain[1, j] * u
+        off = x[j, hit] + late[0, j] * u - late[1, j] * v - re
+        out = x[n_poles + j, hit] + late[0, j] * v + late[1, j] * u - im
+        size = np.sqrt(off**2 + out**2)
+        for p in range(n_ports):
+            one, two = shown[p, j], shown[p, n_poles + j]
+            centre[p] += one * re + two * im
+            reach[p] += np.sqrt(one**2 + two**2) * size
+    for p in range(n_ports):
+        for i in range(slips.shape[1]):
+            middle = stretch[p, hit, i] + centre[p] - motion[p, hit]
+            if abs(middle) + reach[p] > scale[p, hit] * slips[p, i]:
+                return False
+    return True
+
+
+@compiled(fastmath=True)
+def _propagate(grow: FloatArray, added: FloatArray, x: FloatArray) -> None:
+    """Move all modes through one step, with the forces of the ports before it.
+
+    Args:
+        grow: factor of each mode, shape (2, n_poles).
+        added: modal coordinates by these forces, shape of x.
+        x: modal coordinates (changed), shape (2 n_poles, n_hits).
+    """
+    n_poles = grow.shape[1]
+    for j in range(n_poles):
+        c, s = grow[0, j], grow[1, j]
+        real, imag = x[j], x[n_poles + j]
+        up, down = added[j], added[n_poles + j]
+        for h in range(real.size):
+            re, im = real[h], imag[h]
+            real[h] = c * re - s * im + up[h]
+            imag[h] = c * im + s * re + down[h]
+
+
+@compiled(fastmath=True)
+def _strike(
+    steps: _Steps,
+    struck: FloatArray,
+    force: tuple[FloatArray, FloatArray],
+    x: FloatArray,
+) -> None:
+    """Add what the hammer moves in one step.
+
+    Args:
+        steps: of all modes.
+        struck: modal force of each hit per N, shape (2, n_poles, n_hits).
+        force: before and after the step [N], shape (n_hits,) each.
+        x: modal coordinates (changed).
+    """
+    early, late = steps[1], steps[2]
+    f0, f1 = force
+    n_poles = early.shape[1]
+    for j in range(n_poles):
+        a, b, c, d = early[0, j], late[0, j], early[1, j], late[1, j]
+        for h in range(f0.size):
+            u, v = struck[0, j, h], struck[1, j, h]
+            re, im = a * f0[h] + b * f1[h], c * f0[h] + d * f1[h]
+            x[j, h] += u * re - v * im
+            x[n_poles + j, h] += u * im + v * re
+
+
+@compiled(fastmath=True)
+def integrate_hits(
+    steps: _Steps,
+    ports: _Ports,
+    laws: _Laws,
+    scale: FloatArray,
+    hits: tuple[FloatArray, FloatArray],
+    numbers: tuple[int, int, int],
+    found: FloatArray,
+) -> None:
+    """Integrate hits side by side; `found` receives the forces.
+
+    Args:
+        steps: of all modes.
+        ports: as in `integrate_hits`.
+        laws: of the ports.
+        scale: of the slips, shape (n_ports, n_hits).
+        hits: modal force of each hit per N, shape (2, n_poles, n_hits), and force [N],
+            shape (n_samples, n_hits).
+        numbers: steps per sample, corrections per step, and samples between two
+            questions whether the sliders rest (0: never).
+        found: zeros, shape (n_samples, n_ports, n_hits).
+    """
+    drive, shown, speeds, instant = ports[0], ports[1], ports[2], ports[4]
+    parts, corrections, asked = numbers
+    struck, force = hits
+    slips = laws[3]
+    n_samples, n_ports, n_hits = found.shape
+    x = np.zeros((drive.shape[0], n_hits))
+    added = np.zeros((drive.shape[0], n_hits))
+    first = np.zeros((n_ports, n_hits, slips.shape[1]))
+    last = np.zeros((n_ports, n_hits, slips.shape[1]))
+    d, old = np.zeros((n_ports, n_hits)), np.zeros((n_ports, n_hits))
+    pair = np.zeros((2 * n_ports, n_hits))
+    base, new = np.zeros((n_ports, n_hits)), np.zeros((n_ports, n_hits))
+    drift, speed = np.zeros((n_ports, n_hits)), np.zeros((n_ports, n_hits))
+    moving = np.any(laws[0] == 4)
+    end = n_samples - 1
+    while end > 0 and not np.any(force[end]):
+        end -= 1
+    for t in range(n_samples - 1):
+        for part in range(parts):
+            pair[n_ports:] = pair[:n_ports]
+            pair[:n_ports] = d
+            np.dot(drive, pair, added)
+            _propagate(steps[0], added, x)
+            if t <= end:
+                rise = (force[t + 1] - force[t]) / parts
+                f0 = force[t] + part * rise
+                _strike(steps, struck, (f0, f0 + rise), x)
+            np.dot(shown, x, base)
+            if moving:
+                np.dot(speeds, x, drift)
+            for _ in range(corrections):
+                np.dot(instant[0], d, new)
+                new += base
+                if moving:
+                    np.dot(instant[1], d, speed)
+                    speed += drift
+                _port_forces(laws, scale, (old, new, speed), (first, last), d)
+            first, last, old, new = last, first, new, old
+            share = (part + 1) / parts
+            found[t + 1] += (share / parts) * d
+            found[t] += ((1.0 - share) / parts) * d
+        if asked > 0 and t > end and t % asked == 0:
+            resting = True
+            for h in range(n_hits):
+                sliders = (slips, first, scale)
+                if not _rests(steps, ports, x, sliders, (old, d), h):
+                    resting = False
+                    break
+            if resting:
+                found[t + 1] += 0.5 * (1.0 - 1.0 / parts) * d
+                found[t + 2 :] = d
+                break
