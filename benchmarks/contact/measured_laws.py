@@ -23,7 +23,7 @@ from jointbench.analysis.contact.spectral.measured_laws import (
     MeasuredCase,
     predict_measured,
 )
-from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
+from jointbench.signal.band_limited.band_limited_fit import fit_lines
 
 POINTS = 256
 LOADS = np.geomspace(1e-4, 1, 9)  # mean pressure over E* times rms gradient
@@ -95,7 +95,7 @@ def judged(seed: int) -> dict[str, object]:
             }
         )
     surface = Areal(f"made {seed}", heights, (1 / POINTS,) * 2, all_valid(heights))
-    fit = fit_band_limited([surface])
+    fit = fit_lines([surface])
     spectrum = isotropic_spectrum(fit)
     case = MeasuredCase(
         spectrum,

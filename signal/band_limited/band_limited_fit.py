@@ -105,6 +105,21 @@ def fit_band_limited(surfaces: Sequence[Surface], *, degree: int = 1) -> BandLim
         mapped = fit_map(first, degree=max(1, degree))
         if mapped is not None:
             return mapped
+    return fit_lines(surfaces, degree=degree)
+
+
+@one_thread()
+def fit_lines(surfaces: Sequence[Surface], *, degree: int = 1) -> BandLimitedFit:
+    """Fit the lines of profiles or of a map, with draws or the measured density.
+
+    Args:
+        surfaces: one profile or map, or independent profiles of one surface.
+        degree: of the form that was removed; a line is always left out.
+
+    Raises:
+        UsageError: lines shorter than 64 points, or several maps.
+        SurfaceTooSmall: too few measured points.
+    """
     sample = line_sample(surfaces, degree=max(1, degree))
     found = _both(SpectralLikelihood(sample))
     excess = _excess(found)

@@ -28,7 +28,7 @@ from jointbench.analysis.contact.spectral.measured_laws import (
 )
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.contact.torque_to_preload import Preload
-from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
+from jointbench.signal.band_limited.band_limited_fit import fit_lines
 from jointbench.signal.band_limited.band_records import BandLimitedFit
 
 CURVE_POINTS = 25
@@ -97,7 +97,7 @@ def measured_prediction(
     Raises:
         BadData: a surface shows no wavelength, or has too few points.
     """
-    fits = tuple(fit_band_limited([one]) for one in surfaces)
+    fits = tuple(fit_lines([one]) for one in surfaces)
     case = _case(surfaces, fits, joint)
     loads = sorted(joint.preloads, key=lambda one: one.value)
     pressure = np.array([one.value for one in loads]) / joint.area
