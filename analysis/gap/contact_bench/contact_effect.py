@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""One effect of the contact bench: a change of preload, law, stiffness or damping."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.contact_bench.joint_states import JointData
+from jointbench.analysis.gap.contact_bench.preload_law import LinearisedLaw
+from jointbench.analysis.gap.model.effect import Effect, Site
+
+SITE = Site("link", "joint")
+
+
+class Stage(IntEnum):
+    """Place of an effect on the way from the torque to a measured value."""
+
+    PRELOAD = 0
+    """Adds to ln P, shape (n_states,)."""
+    LAW = 1
+    """Adds to ln k of the contact, shape (n_states,)."""
+    STIFFNESS = 2
+    """Replaces stiffnesses, shape (6, n_states); damping rows are still zero."""
+    DAMPING = 3
+    """Replaces damping, same shape."""
+    VALUE = 4
+    """Adds to ln of each value, same shape: shapes that no physics explains."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadedJoint:
+    """A joint in all its states, as far as it has been computed.
+
+    Attributes:
+        data: states and facts.
+        law: the base.
+        log_preload: [ln N], shape (n_states,).
+        log_overload: ln of the highest earlier preload over the present one, same
+            shape.
+        omega: angular frequency of the vibration [rad/s], same shape.
+        table: stiffness and damping in the order of `QUANTITIES` [SI], (6, n_states).
+    """
+
+    data: JointData
+    law: LinearisedLaw
+    log_preload: FloatArray
+    log_overload: FloatArray
+    omega: FloatArray
+    table: FloatArray
+
+    @property
+    def preload(self) -> FloatArray:
+        """Preload [N], shape (n_states,)."""
+        return np.asarray(np.exp(self.log_preload))
+
+
+Act = Callable[[FloatArray, LoadedJoint], FloatArray]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactEffect:
+    """An entry of the catalogue of the contact bench.
+
+    Attributes:
+        effect: name, parameters, source and rivals.
+        stage: place at which it acts.
+        act: its physics, from values [SI] and joint to the result of the stage.
+        site: where it is reported.
+    """
+
+    effect: Effect
+    stage: Stage
+    act: Act
+    site: Site = SITE
