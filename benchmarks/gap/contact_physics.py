@@ -151,6 +151,14 @@ def _curve(kind: int) -> tuple[Array, Array, Array]:
     return gaps, load, slope
 
 
+def start_rms(contact: RoughContact, preload: float, gap: float) -> float:
+    """Return the rms height at which a preload leaves a gap over the rms height [m]."""
+    gaps, load, _ = _curve(contact.kind)
+    one = np.exp(np.interp(gap, gaps, np.log(load)))
+    full = 4.0 / 3.0 * contact.modulus * contact.pixel * contact.count * one
+    return float(preload / full)
+
+
 def tangential(
     contact: RoughContact, preload: float, shear: float, friction: float
 ) -> float:

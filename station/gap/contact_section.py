@@ -9,7 +9,11 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.held_out_torques import HeldOutTorques
-from jointbench.analysis.gap.contact_bench.joint_states import QUANTITIES, UNITS
+from jointbench.analysis.gap.contact_bench.joint_states import (
+    QUANTITIES,
+    UNITS,
+    ContactQuantity,
+)
 from jointbench.analysis.gap.diagnosis.contact_diagnosis import ContactDiagnosis
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -31,6 +35,7 @@ _CAPTION = (
     "Lines: mean of the assemblies along rising preload, by the contact law alone and "
     "with the effect."
 )
+_FIRST_DAMPING = QUANTITIES.index(ContactQuantity.NORMAL_DAMPING)
 _MOST_LEVELS = 12
 
 
@@ -60,7 +65,7 @@ def joint_figure(done: ContactDiagnosis, quantity: int) -> Figure:
         quantity: index into `QUANTITIES`.
     """
     bench, key = done.bench, QUANTITIES[quantity].value
-    traces = _points(bench, done.best, quantity)
+    traces = _points(bench, quantity)
     # The law before any fit shows how far the surfaces alone are from the joint.
     nominal = np.zeros(done.base.n_base)
     traces.append(_curve(bench, nominal, None, quantity, "law, nominal inputs", 3))
@@ -68,17 +73,36 @@ def joint_figure(done: ContactDiagnosis, quantity: int) -> Figure:
     if done.best is not done.base:
         label = f"with {effect_words(words_of(done.best.candidates))}"
         traces.append(_curve(bench, done.best.base, done.best, quantity, label, 2))
+    title, unit = _TITLES[key], UNITS[quantity]
+    if quantity >= _FIRST_DAMPING and _known_frequency(bench):
+        title, unit = f"{title} times angular frequency", "N/m"
     return figure(
         traces,
-        axis("preload [N]", log=True),
-        axis(f"{_TITLES[key]} [{UNITS[quantity]}]", log=True),
+        axis("preload, nominal or measured [N]", log=True),
+        axis(f"{title} [{unit}]", log=True),
     )
 
 
-def _points(bench: ContactBench, fit: Fit, quantity: int) -> list[Trace]:
-    """Return measured values at the preload of a fit, by branch and kind."""
+def _known_frequency(bench: ContactBench) -> bool:
+    return bool(np.isfinite(bench.data.states.frequency).all())
+
+
+def _scale(bench: ContactBench, quantity: int) -> FloatArray:
+    """Return what damping is multiplied by, so that states of all frequencies compare.
+
+    Shape (n_states,); 1 for stiffness, and where a frequency is not known.
+    """
+    omega = bench.nominal.omega
+    if quantity >= _FIRST_DAMPING and _known_frequency(bench):
+        return omega
+    return np.ones(omega.size)
+
+
+def _points(bench: ContactBench, quantity: int) -> list[Trace]:
+    """Return measured values at the nominal preload, by branch and kind."""
     rows, states = bench.data.rows, bench.data.states
-    preload = bench.joint(fit.base, fit.terms).preload[rows.state]
+    preload = bench.nominal.preload[rows.state]
+    scale = _scale(bench, quantity)[rows.state]
     sd = np.sqrt(np.diag(rows.covariance))
     own = rows.quantity == quantity
     falling = states.falling[rows.state]
@@ -90,7 +114,7 @@ def _points(bench: ContactBench, fit: Fit, quantity: int) -> list[Trace]:
     found = []
     for name, chosen, symbol in kinds:
         if chosen.any():
-            value = np.exp(rows.value[chosen])
+            value = np.exp(rows.value[chosen]) * scale[chosen]
             error = CONTACT.interval_z * sd[chosen] * value
             shown = None if symbol == "arrow-bar-up" else error
             found.append(
@@ -112,11 +136,12 @@ def _curve(
     mean[bench.layout.assembly :] = 0.0
     joint = bench.joint(mean, () if fit is None else fit.terms)
     rising = np.flatnonzero(~bench.data.states.falling)
-    first = np.argsort(joint.preload[rising])
-    chosen = rising[first]
+    preload = bench.nominal.preload
+    chosen = rising[np.argsort(preload[rising])]
+    value = joint.table[quantity] * _scale(bench, quantity)
     return line(
-        joint.preload[chosen],
-        joint.table[quantity, chosen],
+        preload[chosen],
+        value[chosen],
         label,
         color=PALETTE[color],
         dash="dot" if label.startswith("law, nominal") else "solid",

@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.linalg
-import scipy.special
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.contact_bench.contact_catalogue import contact_catalogue
 from jointbench.analysis.gap.contact_bench.contact_damping import contact_probes
 from jointbench.analysis.gap.contact_bench.contact_effect import (
@@ -27,16 +26,26 @@ from jointbench.analysis.gap.contact_bench.contact_layout import (
 )
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.contact_views import contact_views
+from jointbench.analysis.gap.contact_bench.joint_sizes import (
+    joint_scales,
+    log_range,
+    nominal_joint,
+    state_blocks,
+)
 from jointbench.analysis.gap.contact_bench.joint_states import (
     QUANTITIES,
     ContactQuantity,
     JointData,
-    JointRows,
 )
 from jointbench.analysis.gap.contact_bench.preload_law import (
     LinearisedLaw,
     PreloadLaw,
     linearised,
+)
+from jointbench.analysis.gap.contact_bench.value_residuals import (
+    ValueResiduals,
+    plain_residuals,
+    value_residuals,
 )
 from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.model.effect import Candidate, Term
@@ -64,9 +73,9 @@ class ContactBench:
         entries: effects and probes by name and site word.
         candidates: the catalogue.
         probes: further shapes for directed tests.
-        omega: angular frequency of the vibration [rad/s], shape (n_states,).
-        whitener: inverse root of the covariance, 0 for values known from below,
-            shape (n_rows, n_rows).
+        nominal: the joint before any fit: its nominal preloads, their median, the
+            highest earlier ones, and the frequency of the vibration.
+        values: what whitens the values.
         blocks: groups of rows: one for each state.
         scales: words to values.
         policy: thresholds for its fits.
@@ -78,8 +87,8 @@ class ContactBench:
     entries: dict[str, ContactEffect]
     candidates: tuple[Candidate, ...]
     probes: tuple[Candidate, ...]
-    omega: FloatArray
-    whitener: FloatArray
+    nominal: LoadedJoint
+    values: ValueResiduals
     blocks: Blocks
     scales: dict[str, float]
     policy: Policy = STANDARD
@@ -134,9 +143,18 @@ class ContactBench:
     def refine(
         self, base: FloatArray, terms: Sequence[Term], *, without: Sequence[int] = ()
     ) -> "ContactBench":
-        """Return the bench with its law linearised at a solution."""
-        about = tuple(float(v) for v in base[: self.layout.law])
-        return replace(self, law=linearised(self.law.law, _range(self.data), about))
+        """Return the bench with its law linearised at a solution.
+
+        A base that has not found its effect yet may leave the range in which the law
+        is defined, so the point is kept near the nominal inputs.
+        """
+        reach = CONTACT.law_reach * self.layout.sd[: self.layout.law]
+        about = np.clip(base[: self.layout.law], -reach, reach)
+        try:
+            law = linearised(self.law.law, log_range(self.data), about.tolist())
+        except BadData:
+            return self
+        return replace(self, law=law)
 
     def chosen(self, keep: BoolArray) -> "ContactBench":
         """Return the bench with some of its rows, (n_rows,); states remain."""
@@ -144,8 +162,8 @@ class ContactBench:
         return replace(
             self,
             data=replace(self.data, rows=rows),
-            whitener=_whitener(rows),
-            blocks=_blocks(replace(self.data, rows=rows)),
+            values=value_residuals(rows),
+            blocks=state_blocks(replace(self.data, rows=rows)),
         )
 
     def plain(self, keep: BoolArray) -> "ContactBench":
@@ -155,7 +173,7 @@ class ContactBench:
         return replace(
             self,
             data=replace(self.data, rows=seen),
-            whitener=np.eye(rows.value.size),
+            values=plain_residuals(seen),
         )
 
     def joint(self, base: FloatArray, terms: Sequence[Term]) -> LoadedJoint:
@@ -165,12 +183,10 @@ class ContactBench:
             entry = self.entries[term.candidate.label]
             acts[entry.stage].append((entry, values_of(self, term)))
         layout, data = self.layout, self.data
-        log_p = data.nominal_log_preload + base[layout.state :]
+        log_p = self.nominal.log_preload + base[layout.state :]
         if layout.nut >= 0:
             log_p = log_p - data.states.by_torque * base[layout.nut]
-        joint = LoadedJoint(
-            data, self.law, log_p, data.log_overload, self.omega, np.zeros((6, 1))
-        )
+        joint = replace(self.nominal, law=self.law, log_preload=log_p)
         for entry, values in acts[Stage.PRELOAD]:
             log_p = log_p + entry.act(values, joint)
         joint = replace(joint, log_preload=log_p)
@@ -194,12 +210,15 @@ class ContactBench:
         """Return the stiffness of the contact alone, shape (6, n_states)."""
         layout, states = self.layout, self.data.states
         log_k = self.law.log_stiffness(joint.log_preload, base[: layout.law])
-        middle = np.median(self.data.nominal_log_preload)
-        turn = turn + base[layout.factor + 1] * (joint.log_preload - middle)
+        turn = turn + base[layout.factor + 1] * (joint.log_preload - joint.middle)
         common = turn + base[layout.factor] + base[layout.assembly + states.assembly]
         log_lever = 2.0 * np.log(self.data.facts.rocking_radius or 1.0)
         table = np.zeros((len(QUANTITIES), states.torque.size))
+        needed = {0, *np.flatnonzero(layout.own[:4] >= 0)}
+        needed |= {1} if layout.own[5] >= 0 else set()
         for row in range(4):
+            if row not in needed:
+                continue
             own = log_k[0 if row in (0, 3) else 1] + common
             if layout.ratio[row] >= 0:
                 own = own + base[layout.ratio[row]]
@@ -231,11 +250,7 @@ class ContactBench:
     ) -> FloatArray:
         """Return the whitened residual; the resolution does not matter here."""
         raw = self.predict(base, terms) - self.data.rows.value
-        found = self.whitener @ raw
-        bound = self.data.rows.bound
-        if bound.any():
-            found[bound] = _from_below(self._beyond(raw)[bound])
-        return np.asarray(found)
+        return self.values.residual(raw)
 
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
@@ -265,38 +280,11 @@ class ContactBench:
             slopes[each, first + assembly] = change
         change = moved(list(range(layout.state, base.size)))
         slopes[each, layout.state + rows.state] = change
-        found = self.whitener @ slopes
-        bound = rows.bound
-        if bound.any():
-            z = self._beyond(at - rows.value)[bound]
-            down = -_from_below_slope(z) / self._bound_sd()[bound]
-            found[bound] = -down[:, None] * slopes[bound]
-        return np.asarray(found)
-
-    def _bound_sd(self) -> FloatArray:
-        own = np.sqrt(np.diag(self.data.rows.covariance))
-        return np.asarray(np.hypot(own, CONTACT.bound_sd))
-
-    def _beyond(self, raw: FloatArray) -> FloatArray:
-        """Return how far a prediction lies above a lower bound [sd]."""
-        return np.asarray(raw / self._bound_sd() + CONTACT.bound_z)
+        return self.values.slopes(at - rows.value, slopes)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return the residual of a fit by view."""
         return contact_views(self.data, fit.residual)
-
-
-def _from_below(z: FloatArray) -> FloatArray:
-    """Return the root of -2 ln Phi(z): a bound that is exceeded costs nothing."""
-    return np.asarray(np.sqrt(-2.0 * scipy.special.log_ndtr(z)))
-
-
-def _from_below_slope(z: FloatArray) -> FloatArray:
-    """Return d/dz of that root, negative."""
-    log_phi = scipy.special.log_ndtr(z)
-    density = -0.5 * z**2 - 0.5 * np.log(2.0 * np.pi)
-    root = np.sqrt(-2.0 * log_phi)
-    return np.asarray(-np.exp(density - log_phi) / np.maximum(root, 1e-12))
 
 
 def make_contact_bench(
@@ -321,85 +309,19 @@ def make_contact_bench(
     catalogue, probes = contact_catalogue(data, without), contact_probes(data)
     if not any(p.per_cut for p in law.parameters):
         catalogue = tuple(e for e in catalogue if e.effect.name != "scale_cut")
+    base_law = linearised(law, log_range(data))
     effects = [Candidate(e.effect, e.site) for e in (*catalogue, *probes)]
     entries = dict(zip((c.label for c in effects), (*catalogue, *probes), strict=True))
     return ContactBench(
         data=data,
-        law=linearised(law, _range(data)),
+        law=base_law,
         layout=contact_layout(data, law.parameters),
         entries=entries,
         candidates=tuple(effects[: len(catalogue)]),
         probes=tuple(effects[len(catalogue) :]),
-        omega=_omega(data),
-        whitener=_whitener(data.rows),
-        blocks=_blocks(data),
-        scales=_scales(data),
+        nominal=nominal_joint(data, base_law),
+        values=value_residuals(data.rows),
+        blocks=state_blocks(data),
+        scales=joint_scales(data),
         policy=policy,
     )
-
-
-def _range(data: JointData) -> tuple[float, float]:
-    log_p = data.nominal_log_preload
-    return float(log_p.min()), float(log_p.max())
-
-
-def _whitener(rows: JointRows) -> FloatArray:
-    """Return the inverse root of the covariance, 0 where only a bound is known."""
-    found = np.zeros_like(rows.covariance)
-    seen = np.flatnonzero(~rows.bound)
-    root = np.linalg.cholesky(rows.covariance[np.ix_(seen, seen)])
-    inverse = scipy.linalg.solve_triangular(root, np.eye(seen.size), lower=True)
-    found[np.ix_(seen, seen)] = inverse
-    return found
-
-
-def _blocks(data: JointData) -> Blocks:
-    states, rows = data.states, data.rows
-    unit = "N" if np.isnan(states.torque).all() else "N m"
-    labels = tuple(
-        {
-            "torque": f"{level:.4g} {unit}",
-            "branch": "falling" if falling else "rising",
-            "assembly": f"{j + 1}",
-        }
-        for level, falling, j in zip(
-            states.level, states.falling, states.assembly, strict=True
-        )
-    )
-    seen = int((~rows.bound).sum())
-    return Blocks(rows.state, labels, seen, (len(rows.value), 1, 1), white=True)
-
-
-def _omega(data: JointData) -> FloatArray:
-    """Return the angular frequency; where it is unknown, one that fits the median."""
-    omega, rows = 2.0 * np.pi * data.states.frequency, data.rows
-    damped = rows.quantity >= 4
-    if not damped.any():
-        return np.ones(omega.size)
-    stiff = rows.quantity < 4
-    ratio = np.median(rows.value[stiff]) - np.median(rows.value[damped])
-    return np.where(np.isnan(omega), CONTACT.loss_factor * np.exp(ratio), omega)
-
-
-def _scales(data: JointData) -> dict[str, float]:
-    """Return characteristic sizes, which scale starts and bounds of effects."""
-    rows, states = data.rows, data.states
-    first = rows.quantity == rows.quantity.min()
-    stiffness = np.exp(rows.value[first])
-    preload = np.exp(data.nominal_log_preload)
-    shear = np.where(np.isnan(states.shear), 1.0, states.shear)
-    torque = states.torque[states.by_torque]
-    found = {
-        "one": 1.0,
-        # A total compliance cannot exceed that of the stiffest state.
-        "compliance": 1.0 / float(stiffness.max()),
-        "least_stiffness": float(stiffness.min()),
-        "highest": float(preload.max()),
-        "least_torque": float(torque.min()) if torque.size else 1.0,
-        "slip": float((preload / shear).min()),
-        "loss": CONTACT.loss_factor,
-    }
-    for row, name in ((4, "normal"), (5, "tangential")):
-        own = np.exp(rows.value[rows.quantity == row])
-        found[f"damping_{name}"] = float(own.min()) if own.size else 1.0
-    return found

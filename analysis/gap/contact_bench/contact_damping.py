@@ -17,7 +17,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     JointData,
 )
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Effect, Site
-from jointbench.analysis.gap.model.effect_parameter import Parameter
+from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
 
 _TORQUE = "add torques over a wider range"
 _DIRECTIONS = (
@@ -46,7 +46,7 @@ def _parallel_damping(row: int, direction: str) -> list[ContactEffect]:
     kinds: list[tuple[str, Act, str, str]] = [
         (
             "radiated_damping",
-            _adds(row, 0.0),
+            _adds(row),
             "waves that leave through the bodies: a damping that no preload changes; "
             "Cremer, Heckl and Petersson, Structure-Borne Sound, ch. 5",
             "gas_film",
@@ -56,16 +56,29 @@ def _parallel_damping(row: int, direction: str) -> list[ContactEffect]:
         kinds.append(
             (
                 "gas_film",
-                _adds(row, CONTACT.gap_slope),
+                _adds(row),
                 "squeeze film, c ~ mu A^2/h^3, gap h falls with ln P: Griffin, "
                 "Richardson and Yamanami 1966, J. Basic Eng. 88, 451",
                 "radiated_damping",
             )
         )
+    fall = Parameter(
+        "gap_fall",
+        "-",
+        lower=0.03,
+        upper=0.4,
+        starts=(CONTACT.gap_slope,),
+        transform=Transform.LOG,
+        prior=(CONTACT.gap_slope, 0.4),
+    )
     return [
         ContactEffect(
             Effect(
-                name, "damping", (amplitude,), source, {rival: "vacuum; " + _TORQUE}
+                name,
+                "damping",
+                (amplitude, fall) if name == "gas_film" else (amplitude,),
+                source,
+                {rival: "vacuum; " + _TORQUE},
             ),
             Stage.DAMPING,
             act,
@@ -75,12 +88,12 @@ def _parallel_damping(row: int, direction: str) -> list[ContactEffect]:
     ]
 
 
-def _adds(row: int, gap_slope: float) -> Act:
+def _adds(row: int) -> Act:
     """Return a damper in parallel, whose gap falls with ln of the preload."""
 
     def act(values: FloatArray, joint: LoadedJoint) -> FloatArray:
-        middle = np.median(joint.data.nominal_log_preload)
-        gap = np.maximum(1.0 - gap_slope * (joint.log_preload - middle), 0.2)
+        slope = values[1] if values.size > 1 else 0.0
+        gap = np.maximum(1.0 - slope * (joint.log_preload - joint.middle), 0.2)
         found = joint.table.copy()
         found[row] = found[row] + values[0] / gap**3
         return found
@@ -109,7 +122,7 @@ def _microslip() -> ContactEffect:
 
 def _slip_loss(values: FloatArray, joint: LoadedJoint) -> FloatArray:
     shear = joint.data.states.shear
-    lowest = np.exp(np.min(joint.data.nominal_log_preload))
+    lowest = np.exp(joint.middle)
     known = np.isfinite(shear)
     relative = np.where(known, shear / np.nanmax(shear) if known.any() else 1.0, 1.0)
     row = QUANTITIES.index(ContactQuantity.TANGENTIAL_DAMPING)

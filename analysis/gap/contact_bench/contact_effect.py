@@ -38,8 +38,9 @@ class LoadedJoint:
         data: states and facts.
         law: the base.
         log_preload: [ln N], shape (n_states,).
-        log_overload: ln of the highest earlier preload over the present one, same
-            shape.
+        middle: median of the nominal ln P [ln N].
+        log_overload: ln of the highest earlier preload over the present one, shape
+            (n_states,).
         omega: angular frequency of the vibration [rad/s], same shape.
         table: stiffness and damping in the order of `QUANTITIES` [SI], (6, n_states).
     """
@@ -47,6 +48,7 @@ class LoadedJoint:
     data: JointData
     law: LinearisedLaw
     log_preload: FloatArray
+    middle: float
     log_overload: FloatArray
     omega: FloatArray
     table: FloatArray

@@ -122,11 +122,12 @@ class ContactBenchSettings:
         "machined surfaces: 0.7 to 0.9; a law may state its own",
     )
     law_margin: tuple[float, float] = numerical(
-        (4.0, 2.0),
+        (4.0, 5.0),
         "ln N",
         "range of the preload below and above that of the states in which a law is "
         "evaluated",
-        "a prevailing torque may take 98 % of the preload",
+        "a prevailing torque may take 98 % of the preload, pressure cones 1 % of the "
+        "area",
     )
     law_points: int = numerical(
         61, "points", "points of the preload at which a law is evaluated"
@@ -136,6 +137,19 @@ class ContactBenchSettings:
         "-",
         "difference step of the logarithm of a parameter of a law",
         "central differences: error below 1e-6 of the slope",
+    )
+    model_sd: float = numerical(
+        0.015,
+        "-",
+        "sd of ln of the formulas of a law over the physics, at a torque of its own",
+        "sums over single summits of eight surfaces depart by up to 2 % at the ends of "
+        "the range from a law whose factor and exponent are fitted",
+    )
+    law_reach: float = numerical(
+        2.0,
+        "sd",
+        "distance from the nominal inputs within which a law is linearised",
+        "a fit without the missing effect moves them by up to 8 sd",
     )
     slope_step: float = numerical(
         1e-6, "-", "difference step of a base coordinate", "as in a descent"
@@ -149,11 +163,23 @@ class ContactBenchSettings:
     descent_steps: int = numerical(
         40, "steps", "most steps of a fit", "the cost of a step is under 3 ms"
     )
+    cut_sd: float = numerical(
+        1.0,
+        "-",
+        "prior sd of ln of the true shortest wavelength over that of the instrument",
+        "stylus tips of 2 to 10 um, pixels of 0.2 to 2 um",
+    )
+    first_steps: int = numerical(
+        6,
+        "steps",
+        "steps of every start of an effect; the best one is then fitted to the end",
+        "made joints",
+    )
     starts: int = numerical(
         3, "starts", "starts of each effect that are fitted", "made joints"
     )
     gap_slope: float = numerical(
-        0.15,
+        0.18,
         "-",
         "relative fall of the gap between rough bodies per unit of ln preload",
         "Gaussian summits: u_0 of 0.4 h_rms at a gap of 2 to 3 h_rms",

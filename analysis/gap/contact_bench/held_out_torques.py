@@ -69,7 +69,8 @@ def hold_out_torques(bench: ContactBench, fit: Fit) -> HeldOutTorques:
     """Predict the values of each torque from a fit to the others.
 
     The interval holds the uncertainty of all parameters, of the preload in the held-out
-    states, and of the measured value.
+    states, of the measured value, and the error of the formulas, which is common to the
+    values of a torque.
 
     Args:
         bench: of the fit.
@@ -113,5 +114,8 @@ def _predict(
     problem = make_problem(held, fit.candidates)
     slopes = jacobian_of(problem, x, problem.residual(x, FULL), FULL)
     spread = slopes @ np.linalg.pinv(hessian, hermitian=True) @ slopes.T
+    # A fit that leaves more than its noise predicts no better than it fits.
+    spread *= max(fit.cost / max(bench.blocks.dof, 1), 1.0)
+    spread += CONTACT.model_sd**2
     mean = held.predict(x[: fit.n_base], split(x, fit.n_base, fit.candidates))
     return mean, spread + rows.covariance[np.ix_(own, own)]

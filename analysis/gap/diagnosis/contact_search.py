@@ -45,11 +45,7 @@ def search_contact(bench: ContactBench, progress: Progress) -> SearchOutcome:
     first = accept_contact(bench, base, base, screening)
     if first.passed:
         return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
-    fits = []
-    for candidate in bench.candidates:
-        progress(candidate.label)
-        fits.append(_best_fit(bench, base, screening, candidate))
-    fits.sort(key=lambda f: score(bench, f))
+    fits = fit_each(bench, base, screening, progress)
     bench, base, fits = _again(bench, base, fits)
     judged = _judged(bench, base, fits)
     best, acceptance = judged[0] if judged else (base, first)
@@ -97,6 +93,24 @@ def fit_contact_base(bench: ContactBench) -> tuple[ContactBench, Fit]:
     return bench, _minimum(bench, (), fit.x)
 
 
+def fit_each(
+    bench: ContactBench, base: Fit, screening: Screening, progress: Progress
+) -> list[Fit]:
+    """Fit every effect of the catalogue to all values, best score first.
+
+    Args:
+        bench: with the law linearised at the base.
+        base: fit without effects.
+        screening: directed tests of the base.
+        progress: receives the label of each effect.
+    """
+    fits = []
+    for candidate in bench.candidates:
+        progress(candidate.label)
+        fits.append(_best_fit(bench, base, screening, candidate))
+    return sorted(fits, key=lambda f: score(bench, f))
+
+
 def _minimum(
     bench: ContactBench, candidates: Sequence[Candidate], start: FloatArray
 ) -> Fit:
@@ -119,8 +133,11 @@ def _best_fit(
             far = np.array(point)
             far[0] = amplitude
             starts.append(np.concatenate([np.zeros(base.n_base), far]))
-    fits = [_minimum(bench, (candidate,), x) for x in starts]
-    return min(fits, key=lambda f: f.cost)
+    fits = [
+        minimise(problem, x, FULL, iterations=CONTACT.first_steps, exact_slopes=False)
+        for x in starts
+    ]
+    return _minimum(bench, (candidate,), min(fits, key=lambda f: f.cost).x)
 
 
 def _again(
