@@ -51,6 +51,8 @@ HIDDEN = (
 )
 _TORQUE_ONLY = {"prevailing_torque", "falling_torque", "relaxation"}
 _SHEAR = {"partial_slip", "microslip_damping"}
+_LEAST_BANDWIDTH = 1.25
+"""Root of the smallest bandwidth that a law of Gaussian summits accepts."""
 KEYS = [q.value for q in QUANTITIES]
 
 
@@ -193,6 +195,8 @@ def _measured_law(plan: _Plan) -> tuple[PreloadLaw, _Plan]:
     scale = contact.rms / contact.pixel
     sds = (0.05, 0.08, 0.1, 0.03)
     errors = np.exp(np.array(sds) * rng.standard_normal(4))
+    least = _LEAST_BANDWIDTH * (errors[1] * slope) ** 2 / (errors[0] * height * bend)
+    errors[2] = max(errors[2], least)
     values = (
         height * contact.rms,
         slope * scale,

@@ -256,9 +256,9 @@ def _effects(
 def _closest(
     outcome: SearchOutcome, bench: ContactBench, finding: Finding
 ) -> Closest | None:
-    if finding is not Finding.UNKNOWN or not outcome.ranked:
+    best = outcome.best
+    if finding is not Finding.UNKNOWN or not best.candidates:
         return None
-    best = outcome.ranked[0]
     chance = _probabilities(outcome, bench)[words_of(best.candidates)]
     return Closest(_labels(best), chance, evidence_of(outcome, bench, best))
 

@@ -163,13 +163,13 @@ def accept_contact(
         base: fit without effects.
         left: directed tests of the fit by other effects and by probes.
     """
-    policy, dof = bench.policy, max(bench.blocks.dof, 1)
+    dof = max(bench.blocks.dof, 1)
     chance = CONTACT.fit_chance if fit.candidates else CONTACT.null_chance
     model = 0.0
     if fit.candidates:
         model = CONTACT.model_error * max(base.cost - dof, 0.0)
     limit = chi2_limit(chance, dof) + model
-    allowed = policy.null_factor * left.threshold + model
+    allowed = CONTACT.null_factor * left.threshold + model
     worst = left.directions[0] if left.directions else None
     reason = ""
     if fit.cost > limit:
@@ -188,9 +188,9 @@ def accept_contact(
     unexplained = bool(reason)
     if fit.candidates and not reason:
         distance = float(np.sqrt(max(base.cost - fit.cost, 0.0)))
-        if distance < policy.amplitude_limit:
+        if distance < CONTACT.amplitude_limit:
             reason = f"the effect is only {distance:.1f} sd from zero"
-        reason = reason or at_the_end(fit, policy)
+        reason = reason or at_the_end(fit, bench.policy)
     return Acceptance(
         passed=not reason,
         reason=reason,
