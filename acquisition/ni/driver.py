@@ -137,9 +137,17 @@ class Chassis:
 
     def strike(self, request: bytes) -> bytes | None:
         """Request a stroke of a simulated bench; None for a real one."""
+        return self._ask_simulation("Strike", request)
+
+    def has_clock(self) -> bool:
+        """Return whether samples arrive on time; some simulations wait for a reader."""
+        return self._ask_simulation("Clock", b"") != b"none"
+
+    def _ask_simulation(self, what: str, request: bytes) -> bytes | None:
+        """Return the answer of a simulated bench; None for a real one."""
         if self._channel is None:
             return None
-        call = self._channel.unary_unary("/jointbench.Hand/Strike")
+        call = self._channel.unary_unary(f"/jointbench.Hand/{what}")
         try:
             answer: bytes = call(request, timeout=5.0)
         except grpc.RpcError as error:

@@ -47,6 +47,16 @@ class LiveSpan:
             self.segment, self.first + stored - self.stored, stored, past - stored
         )
 
+    def joined(self, other: "LiveSpan") -> "LiveSpan | None":
+        """Return both as one if `other` follows at once, otherwise None."""
+        if (
+            other.segment != self.segment
+            or other.first != self.first + self.count
+            or other.stored != self.past
+        ):
+            return None
+        return LiveSpan(self.segment, self.first, self.stored, self.count + other.count)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiveContent:
@@ -118,22 +128,12 @@ def _spans(index: IntArray, good: list[bool]) -> Iterator[LiveSpan]:
         stored += max(count, 0)
         if not whole:
             continue
-        if span is not None and _follows(span, block):
-            span = LiveSpan(span.segment, span.first, span.stored, span.count + count)
-            continue
-        if span is not None:
+        joined = None if span is None else span.joined(block)
+        if span is not None and joined is None:
             yield span
-        span = block
+        span = joined or block
     if span is not None:
         yield span
-
-
-def _follows(one: LiveSpan, other: LiveSpan) -> bool:
-    return (
-        other.segment == one.segment
-        and other.first == one.first + one.count
-        and other.stored == one.past
-    )
 
 
 def _entries(text: bytes) -> Iterator[dict[str, Any]]:

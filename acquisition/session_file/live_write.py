@@ -127,13 +127,24 @@ class LiveSession:
         self._put((segment, first, samples))
         self.samples += samples.shape[1]
 
+    def written(self) -> None:
+        """Return once everything queued is in the file, where any process can read it.
+
+        Raises:
+            InstrumentError: the disk refused something.
+        """
+        self._queue.join()
+        self._raise_failure()
+
     def log(self, entry: Entry) -> None:
-        """Queue an entry of the log; the time is added.
+        """Queue an entry of the log; samples stored and the time are added.
 
         Raises:
             InstrumentError: the disk refused something earlier.
         """
-        line = {**entry, "stored": self.samples, "time": round(time.time(), 3)}
+        line = {**entry}
+        line.setdefault("stored", self.samples)
+        line.setdefault("time", round(time.time(), 3))
         text = json.dumps(line, ensure_ascii=True)
         self._put(f"{zlib.crc32(text.encode()):08x} {text}\n".encode())
 

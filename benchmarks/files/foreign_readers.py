@@ -15,9 +15,9 @@ from jointbench.acquisition.session_file.store import read_session
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.structures.matrices.mesh_files import read_matrix, read_mesh
 from jointbench.station.archive.ledger import read_ledger
-from jointbench.station.commands.identify_links_command import describes_structure
 from jointbench.station.commands.verify_command import run_verify
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.joints.model_kind import describes_structure
 from jointbench.station.measure.plan import read_plan
 from jointbench.station.results.results_read import read_result
 from jointbench.station.schemas.bench_model import BenchModel

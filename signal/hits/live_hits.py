@@ -78,12 +78,18 @@ class HitCutter:
         hit = self._cut(self._trigger + self.after, whole=True)
         return hit
 
-    def break_off(self) -> CutHit | None:
-        """Restart after a gap; return the hit that it cut short, if any."""
+    def break_off(self, origin: int | None = None) -> CutHit | None:
+        """Restart after a gap; return the hit that it cut short, if any.
+
+        Args:
+            origin: index in the stream of the next sample that will be fed; None for
+                the one after the last sample fed.
+        """
         hit = None
         if self._trigger is not None and self._data is not None:
             hit = self._cut(self.origin + self._data.shape[1], whole=False)
         end = self.origin + (0 if self._data is None else self._data.shape[1])
+        end = end if origin is None else origin
         self._data, self.origin, self._from = None, end, end
         return hit
 

@@ -5,23 +5,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from jointbench.analysis.gap.catalogue.catalogue import with_real_joints
 from jointbench.analysis.gap.catalogue.installed_effects import (
     effect_packages,
-    installed_catalogue,
 )
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
 from jointbench.analysis.gap.response.threads import side_by_side
-from jointbench.station.files.input_files import parse_preload
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.gap.curve_section import curve_section
-from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
+from jointbench.station.gap.gap_inputs import Examined, examine
+from jointbench.station.gap.gap_options import gap_request
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
 from jointbench.station.gap.structure_plan import with_structure
 from jointbench.station.report.gap_report import gap_report
 from jointbench.station.report.packages_section import packages_section
-from jointbench.station.schemas.effects_file import read_effects, with_own
 from jointbench.station.screen.escaping_console import Screen, seen
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.terminal import console, table, write_json
@@ -60,14 +57,8 @@ def run_gap(
     files = [Path(name) for name in sources if not is_url(name)]
     owned = [one for one in effects if isinstance(one, Path)]
     check_outputs([*files, *owned, *([model] if model else [])], [report, json_target])
-    wanted = GapRequest(
-        model, names_in(without), parse_preload(preload) if preload else None
-    )
-    own = [entry for path in owned for entry in read_effects(path)]
-    laws = [one for one in effects if isinstance(one, str)]
-    entries = with_real_joints(installed_catalogue(), laws)
-    wanted = replace(
-        wanted, entries=with_own(entries, own), curves=curves, extended=bool(effects)
+    wanted = gap_request(
+        model=model, preload=preload, without=without, effects=effects, curves=curves
     )
     packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
@@ -91,11 +82,6 @@ def run_gap(
         console(json_target).print(f"\nreport: {report}", soft_wrap=True)
     write_json(json_target, _json(sources, done, packages))
     return done.found
-
-
-def names_in(joined: str | None) -> frozenset[str]:
-    """Return the names of an option that joins them by commas."""
-    return frozenset(word.strip() for word in (joined or "").split(",") if word.strip())
 
 
 def _show(done: Examined, packages: Mapping[str, str], json_target: str | None) -> None:

@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.lumped.identified import (
     Identification,
     identification_json,
@@ -13,7 +13,7 @@ from jointbench.signal.modal.modes import ModalSettings
 from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.files.toml_text import load_toml
+from jointbench.station.joints.model_kind import describes_structure
 from jointbench.station.pipeline.chain import ChainSettings, run_chain
 from jointbench.station.pipeline.link_stage import fits, identify_joint
 from jointbench.station.pipeline.modal_options import parse_band
@@ -85,15 +85,6 @@ def identify_any(
             "bench use 'jointbench report SESSION --model MODEL --out PATH'"
         )
     return fits(run_identify(model, sessions, band=band, json_target=json_target))
-
-
-def describes_structure(model: Path) -> bool:
-    """Return whether a model file has meshed bodies; False if it cannot be read."""
-    try:
-        content = load_toml(model)
-    except (BadData, OSError, ValueError, RecursionError):
-        return False  # the reader of lumped benches reports the error
-    return "joints" in content
 
 
 def show_joint(result: Identification, json_target: str | None) -> None:

@@ -6,65 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import UsageError
-from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.lumped.identified import IdentificationVerdict
-from jointbench.analysis.structures.identification.identify_structure import (
-    StructureSearch,
-    identify_structure,
-)
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
     structure_json,
 )
-from jointbench.analysis.structures.identification.sensor_masses import (
-    SensorMasses,
-    sensor_masses,
-)
-from jointbench.analysis.structures.matrices.structure import Structure
-from jointbench.analysis.structures.reduction.body_moduli import with_moduli
-from jointbench.analysis.structures.reduction.mounted_sensors import (
-    MountedSensor,
-    sensor_rows,
-)
-from jointbench.analysis.structures.reduction.reduce import reduce_structure
-from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
-from jointbench.analysis.structures.reduction.reduction_cache import cached, content_key
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.contact_comparison import (
-    against_theory,
-    identified_states,
-    known_preloads,
     theory_json,
 )
-from jointbench.station.joints.identify_checks import (
-    SPARE_MODES,
-    check_measured,
-    check_request,
-    known_priors,
-    known_values,
-    mode_counts,
-)
-from jointbench.station.joints.structure_contact import joint_of, theory_surface
-from jointbench.station.joints.structure_model import (
-    StructureModel,
-    masses_of,
-    sensors_of,
-    structure_of,
-)
-from jointbench.station.joints.structure_states import (
-    MEASURED_LABEL,
-    MeasuredState,
-    all_evidence,
-    measured_states,
-)
-from jointbench.station.joints.theory_records import TheoryRow
+from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
-from jointbench.station.screen.terminal import console, table, working, write_json
-
-RIGID_MODES = 6
+from jointbench.station.screen.terminal import console, table, write_json
 
 
 def run_identify_structure(
@@ -85,117 +39,28 @@ def run_identify_structure(
         Whether the structure is consistent with the measurement and with the full mesh.
     """
     check_outputs([model, *sessions, *surfaces], [json_target, report])
-    settings = read_toml(model, StructureModel)
-    with working("meshing"):
-        structure = structure_of(settings, model.parent)
-    check_request(settings, structure, sessions)
-    surface = _surface(settings, model, surfaces, sessions)
-    measured = measured_states(sessions, band)
-    check_measured(settings, structure, measured)
-    preloads = _preloads(settings, measured)
-    sensors = {**sensors_of(settings.hits), **sensors_of(settings.sensors)}
-    with working("reducing, identifying joints"):
-        reduced = _reduced(structure, settings, measured, sensors, cache)
-        evidence = all_evidence(structure, reduced, settings, measured)
-        result = identify_structure(
-            reduced,
-            evidence,
-            known=known_values(settings.identify, reduced.names),
-            sought=settings.identify.sought,
-            shared=settings.identify.shared,
-            priors=known_priors(settings.identify),
-            search=StructureSearch(masses=_masses(settings, structure, reduced)),
-            structure=structure,
-        )
-    rows = _theory(settings, surface, preloads, result)
+    done = identified_structure(
+        model, sessions, band=band, cache=cache, surfaces=surfaces
+    )
+    result, rows = done.result, done.theory
     show_structure(result, json_target)
     show_theory(rows, json_target)
-    content = structure_json(result, reduced.names)
+    content = structure_json(result, done.reduced.names)
     write_json(json_target, content | ({"theory": theory_json(rows)} if rows else {}))
     if report is not None:
         from jointbench.station.report.structure_report import write_structure_report
 
         write_structure_report(
-            report, model.name, structure, reduced, result, theory_section(rows)
+            report,
+            model.name,
+            done.structure,
+            done.reduced,
+            result,
+            theory_section(rows),
         )
     return result.verdict is not IdentificationVerdict.INCONSISTENT and all(
         one.agrees for one in result.full_check
     )
-
-
-def _surface(
-    settings: StructureModel,
-    model: Path,
-    surfaces: Sequence[Path],
-    sessions: Sequence[Path],
-) -> ContactSurface | None:
-    """Return the contact surface where the model has a table [contact]."""
-    if settings.contact is None:
-        if surfaces:
-            raise UsageError(
-                "--surface needs a table [contact] in the model: modulus, hardness and "
-                "the joint with these surfaces"
-            )
-        return None
-    with working("fitting surfaces"):
-        return theory_surface(
-            settings.contact, model.parent, list(surfaces), list(sessions)
-        )
-
-
-def _preloads(
-    settings: StructureModel, measured: dict[str, MeasuredState]
-) -> dict[str, float]:
-    """Return the preload of each state [N] where the model has a table [contact]."""
-    if settings.contact is None:
-        return {}
-    found = {label: state.preload for label, state in measured.items()}
-    if settings.measured is not None:
-        found = {MEASURED_LABEL: None, **found}
-    return known_preloads(settings.contact, found)
-
-
-def _theory(
-    settings: StructureModel,
-    surface: ContactSurface | None,
-    preloads: dict[str, float],
-    result: StructureIdentification,
-) -> tuple[TheoryRow, ...]:
-    table, joints = settings.contact, settings.parametric_joints
-    if table is None or surface is None:
-        return ()
-    states = identified_states(result, joint_of(table, joints), preloads, joints)
-    return against_theory(states, surface, table)
-
-
-def _reduced(
-    structure: Structure,
-    settings: StructureModel,
-    measured: dict[str, MeasuredState],
-    sensors: dict[str, MountedSensor],
-    cache: Path | None,
-) -> ReducedModel:
-    most = max(mode_counts(settings, measured).values())
-    modes = settings.identify.modes or RIGID_MODES + most + SPARE_MODES
-    box = settings.identify.stiffness_box
-    loads = sensor_rows(structure, list(sensors.values())) if sensors else None
-    key = content_key(structure, modes, box, sorted(map(repr, sensors.values())))
-    model = cached(
-        cache,
-        key,
-        lambda: reduce_structure(structure, modes=modes, box=box, loads=loads),
-    )
-    return with_moduli(model, list(settings.identify.modulus_sd))
-
-
-def _masses(
-    settings: StructureModel, structure: Structure, reduced: ReducedModel
-) -> SensorMasses | None:
-    """Return the masses of sensors that are unknown."""
-    unknown = settings.identify.mass_sd
-    if not unknown:
-        return None
-    return sensor_masses(structure, reduced, masses_of(settings), unknown)
 
 
 def show_structure(result: StructureIdentification, json_target: str | None) -> None:

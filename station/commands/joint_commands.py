@@ -109,7 +109,8 @@ def gap_command(
         jointbench gap hits.h5 --model sheet.json
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
-    from jointbench.station.commands.gap_command import names_in, run_gap
+    from jointbench.station.commands.gap_command import run_gap
+    from jointbench.station.gap.gap_options import names_in
 
     run_gap(
         sources,

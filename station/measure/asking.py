@@ -40,7 +40,7 @@ class Asker:
         Raises:
             InstrumentError: no hit for longer than the plan waits.
         """
-        rate, wait = self.bench.stream.sample_rate, self.bench.plan.hits.wait
+        rate, wait = self.bench.recorder.sample_rate, self.bench.plan.hits.wait
         self._silent += count
         if self._silent > wait * rate:
             raise InstrumentError(

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Parts of a session: plan, stream, file, operator, screen, torque tester."""
+"""Parts of a session: plan, recording, operator, screen, torque tester."""
 
 from dataclasses import dataclass
 
-from jointbench.acquisition.ni.stream import NiStream
+from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.records.recordings import Channel
-from jointbench.acquisition.session_file.live_write import LiveSession
 from jointbench.station.measure.bolt_torques import BoltWatch
 from jointbench.station.measure.observer import Operator, Watcher
 from jointbench.station.measure.plan import MeasurePlan
@@ -17,9 +16,8 @@ class BenchParts:
 
     Attributes:
         plan: what is measured.
-        stream: of samples, started.
-        live: the file that everything goes into.
-        channels: of the stream.
+        recorder: process that stores every sample, and passes it on.
+        channels: of its stream.
         operator: whoever strikes and tightens.
         watcher: whoever looks on.
         bolts: reads the torque of every bolt; None where the plan names no tester.
@@ -27,8 +25,7 @@ class BenchParts:
     """
 
     plan: MeasurePlan
-    stream: NiStream
-    live: LiveSession
+    recorder: RecorderProcess
     channels: tuple[Channel, ...]
     operator: Operator
     watcher: Watcher

@@ -18,11 +18,13 @@ from jointbench.acquisition.basics.errors import (
 )
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
-from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
+from jointbench.acquisition.ni.stream import Counters, StreamSettings
+from jointbench.acquisition.recorder.recorder_process import RecorderProcess
+from jointbench.acquisition.recorder.requests import Setup
 from jointbench.acquisition.records.recordings import Channel, Hit, Verdict
 from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live
-from jointbench.acquisition.session_file.live_write import LiveSession, channel_rows
+from jointbench.acquisition.session_file.live_write import channel_rows
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.session_place import (
     Place,
@@ -38,7 +40,7 @@ from jointbench.station.measure.plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure.session_engine import MeasureSession
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
-from jointbench.station.screen.interrupt import interruptible_wait, patient_interrupt
+from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
 from jointbench.station.sources.serial_port import line_name
 
@@ -134,34 +136,33 @@ def measure(
     """
     warnings = _warnings(plan, opened)
     record = Record()
-    stream = NiStream(opened.chassis, plan.sensors, _stream_settings(plan, record))
-    stream.start()
     with patient_interrupt(record):
         try:
-            _record(plan, opened, out, (stream, watcher, warnings, record))
+            with RecorderProcess(
+                _setup(plan, opened), given_up=lambda: record.interrupted
+            ) as recorder:
+                _record(plan, opened, out, (recorder, watcher, warnings, record))
         except BaseException:
-            stream.close()
             # What went wrong first is what the operator has to know.
             with suppress(JointbenchError):
                 if out.exists() and not is_held(out):
                     finish_session(out)
             raise
-        stream.close()
         finish_session(out)
     return Measured(
-        out, record, stream.counters, len(conditions(plan)), stream.sample_rate
+        out, record, recorder.counters, len(conditions(plan)), recorder.sample_rate
     )
 
 
-def _stream_settings(plan: MeasurePlan, record: Record) -> StreamSettings:
+def _setup(plan: MeasurePlan, opened: OpenChassis) -> Setup:
     acquisition = plan.acquisition
-    return StreamSettings(
+    settings = StreamSettings(
         sample_rate=acquisition.sample_rate,
         block=round(acquisition.block * acquisition.sample_rate),
         buffer=acquisition.buffer,
         patience=acquisition.patience,
-        sleep=interruptible_wait(record),
     )
+    return Setup(opened.chassis.address, plan.sensors, settings)
 
 
 def finish_session(path: Path) -> None:
@@ -185,21 +186,16 @@ def _record(
     plan: MeasurePlan,
     opened: OpenChassis,
     out: Path,
-    running: tuple[NiStream, Watcher, tuple[str, ...], Record],
+    running: tuple[RecorderProcess, Watcher, tuple[str, ...], Record],
 ) -> None:
-    stream, watcher, warnings, record = running
+    recorder, watcher, warnings, record = running
     channels = table_channels(plan.sensors)
-    meta = _meta(plan, opened, channels, stream.sample_rate)
-    block = stream.settings.block
-    with (
-        _torque_tester(plan) as bolts,
-        LiveSession(out, meta, channels=len(channels), block=block) as live,
-    ):
+    with _torque_tester(plan) as bolts:
+        recorder.begin(out, _meta(plan, opened, channels, recorder.sample_rate))
         session = MeasureSession(
             BenchParts(
                 plan=plan,
-                stream=stream,
-                live=live,
+                recorder=recorder,
                 channels=channels,
                 operator=opened.operator,
                 watcher=watcher,
@@ -209,15 +205,14 @@ def _record(
             record,
         )
         try:
-            watcher.begin(channels, stream.sample_rate)
+            watcher.begin(channels, recorder.sample_rate)
             for words in warnings:
-                live.log({"kind": "warning", "words": words})
+                recorder.log({"kind": "warning", "words": words})
                 watcher.say(f"warning: {words}")
             session.run()
         except KeyboardInterrupt:
             record.interrupted = True
-        finally:
-            _close_the_books(live, stream, record)
+        recorder.stop(interrupted=record.interrupted)
 
 
 @contextmanager
@@ -229,24 +224,6 @@ def _torque_tester(plan: MeasurePlan) -> Iterator[BoltWatch | None]:
         return
     with line_name(torque.line) as name:
         yield BoltWatch(table=torque, line=name, bolts=joint.bolts, wait=plan.hits.wait)
-
-
-def _close_the_books(live: LiveSession, stream: NiStream, record: Record) -> None:
-    """Log what the device made against what was stored, and that this is the end."""
-    with suppress(InstrumentError):
-        stream.count()
-    counters = stream.counters
-    live.log(
-        {
-            "kind": "continuity",
-            "acquired": counters.acquired,
-            "unread": counters.unread,
-            "unwanted": counters.unwanted,
-            "stored_samples": live.samples,
-            "lost": counters.lost,
-        }
-    )
-    live.log({"kind": "end", "interrupted": record.interrupted})
 
 
 def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:

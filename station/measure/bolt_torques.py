@@ -12,13 +12,13 @@ from typing import Protocol
 
 from jointbench.acquisition.basics.errors import FormatError, InstrumentError
 from jointbench.acquisition.basics.registry import Entry
+from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.serial_lines.instruments import read_torque, torque_tester
 from jointbench.acquisition.serial_lines.line import SerialLine
 from jointbench.acquisition.serial_lines.serial_instrument import (
     Reading,
     SerialInstrument,
 )
-from jointbench.acquisition.session_file.live_write import LiveSession
 from jointbench.station.measure.observer import Command, Watcher
 from jointbench.station.measure.session_record import Record
 from jointbench.station.schemas.plan_model import TorqueTable
@@ -42,7 +42,7 @@ class Surroundings(Protocol):
         ...
 
     @property
-    def live(self) -> LiveSession:
+    def recorder(self) -> RecorderProcess:
         """Where it is logged."""
         ...
 
@@ -120,7 +120,7 @@ class BoltWatch:
     def _all(
         self, target: float, tester: "Tester", bench: Surroundings, record: Record
     ) -> tuple[float, ...] | None:
-        watcher, live = bench.watcher, bench.live
+        watcher, recorder = bench.watcher, bench.recorder
         found: list[float] = []
         tries = 0
         while len(found) < self.bolts:
@@ -135,7 +135,7 @@ class BoltWatch:
             assert isinstance(answer, Reading)
             tries += 1
             words, kept = self._weigh(answer, target, tries)
-            live.log(_entry(answer, number, target, kept=kept))
+            recorder.log(_entry(answer, number, target, kept=kept))
             watcher.say(f"bolt {number}: {answer.raw}, {words}")
             if kept:
                 found, tries = [*found, abs(answer.value)], 0

@@ -3,8 +3,7 @@
 
 from dataclasses import dataclass, field
 
-from jointbench.acquisition.ni.stream import NiStream
-from jointbench.acquisition.session_file.live_write import LiveSession
+from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.station.measure.observer import Watcher
 
 LOOK_AT_CABLES = 1.0  # [s] of signal between looks at the sensor loops
@@ -15,14 +14,12 @@ class CableWatch:
     """Check the sensor loops periodically, and report changes.
 
     Attributes:
-        stream: that knows the device.
-        live: where a change is logged.
+        recorder: that knows the device, and logs a change.
         watcher: receives the messages.
         open: channels whose loop is open.
     """
 
-    stream: NiStream
-    live: LiveSession
+    recorder: RecorderProcess
     watcher: Watcher
     open: tuple[str, ...] = field(default=())
     _since: int = 0
@@ -34,15 +31,15 @@ class CableWatch:
             count: samples since this was called last.
         """
         self._since += count
-        if self._since < LOOK_AT_CABLES * self.stream.sample_rate:
+        if self._since < LOOK_AT_CABLES * self.recorder.sample_rate:
             return False
         self._since = 0
-        found = self.stream.open_loops()
+        found = self.recorder.open_loops()
         if found == self.open:
             return False
         self.open = found
         words = ", ".join(found)
-        self.live.log({"kind": "cable", "channels": words or "all closed again"})
+        self.recorder.log({"kind": "cable", "channels": words or "all closed again"})
         self.watcher.say(
             f"sensor loop open: {words}; hits wait until the cable is back"
             if found

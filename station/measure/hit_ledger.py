@@ -7,8 +7,8 @@ one counts, and none is ever taken out.
 
 from dataclasses import dataclass, replace
 
+from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.records.recordings import Hit, Verdict
-from jointbench.acquisition.session_file.live_write import LiveSession
 from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.measure.observer import Command
 from jointbench.station.measure.running_average import Accepted, Spoiler
@@ -46,8 +46,8 @@ class HitLedger:
     Older conditions are in the file alone: their samples would fill the memory.
     """
 
-    def __init__(self, live: LiveSession, record: Record) -> None:
-        self._live, self._record = live, record
+    def __init__(self, recorder: RecorderProcess, record: Record) -> None:
+        self._recorder, self._record = recorder, record
         self._entered: list[Entered] = []
         self._said: list[Entered] = []
 
@@ -59,7 +59,7 @@ class HitLedger:
     def enter(self, hit: Hit, cut: CutHit, condition: int | None) -> None:
         """Log a new hit; None stands for a trial hit, which belongs to no condition."""
         index = len(self._record.hits)
-        self._live.log(hit_entry(hit, number=index, new=True))
+        self._recorder.log(hit_entry(hit, number=index, new=True))
         self._record.hits.append(hit)
         if condition is not None:
             self._entered = [e for e in self._entered if e.condition >= condition - 1]
@@ -134,7 +134,7 @@ class HitLedger:
 
     def _replace(self, entered: Entered, hit: Hit) -> Entered:
         new = replace(entered, hit=hit)
-        self._live.log(hit_entry(hit, number=entered.index, new=False))
+        self._recorder.log(hit_entry(hit, number=entered.index, new=False))
         self._record.hits[entered.index] = hit
         at = self._entered.index(entered)
         self._entered[at] = new

@@ -29,11 +29,11 @@ class Points:
     ) -> None:
         self._bench, self._record, self._trigger = bench, record, trigger
         self._route = Route(bench, record)
-        self._ledger = HitLedger(bench.live, record)
+        self._ledger = HitLedger(bench.recorder, record)
         self._asker = Asker(bench, self._route, trigger)
         self._book = CheckBook(bench.channels)
         self._trials = Trials(bench, record, trigger)
-        self._average = GrowingAverage(bench.channels, bench.stream.sample_rate)
+        self._average = GrowingAverage(bench.channels, bench.recorder.sample_rate)
         self.tighten, self.ask = self._route.tighten, self._asker.ask
         self.wait = self._asker.wait
 
@@ -55,11 +55,12 @@ class Points:
         """
         bench, condition = self._bench, self._route.condition
         if self._route.tighten():
-            self._trigger.break_off()
+            self._trigger.break_off(bench.recorder.samples)
             condition = self._route.condition
         if self._trials.over and bench.hardware_trigger:
-            bench.stream.trigger_by(self._trigger.on_the_device())
-        bench.live.log(run_entry(condition, trial=self.on_trial))
+            bench.recorder.trigger_by(self._trigger.on_the_device())
+            self._trigger.break_off(bench.recorder.samples)
+        bench.recorder.log(run_entry(condition, trial=self.on_trial))
         self._asker.ask()
 
     def take(self, cut: CutHit) -> None:
@@ -160,7 +161,7 @@ class Points:
         if frf is not None:
             for check in self._book.enter(self._route.condition, frf):
                 self._record.checks.append(check)
-                self._bench.live.log(check_entry(check))
+                self._bench.recorder.log(check_entry(check))
                 if not check.passed:
                     self._bench.watcher.say(f"check {check.name}: {check.words}")
         self._route.advance(given_up=given_up)

@@ -68,11 +68,11 @@ class Route:
         bench, target = self._bench, self._conditions[self._record.done].torque
         if bench.bolts is None or target is None or target == self._tight:
             return False
-        bench.stream.pause()
+        bench.recorder.pause()
         readings = bench.bolts.tighten(target, bench, self._record)
         if readings is None:
             self._record.interrupted = True
         else:
             self._tight, self._mean = target, sum(readings) / len(readings)
-        bench.stream.resume()
+        bench.recorder.resume()
         return True

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The session engine: everything that arrives is stored first and judged afterwards.
+"""The session engine: it follows a recording and judges what was stored.
 
 The engine never waits for the operator: a hit that falls while somebody reads the
 screen counts like any other. What a hit means for the plan is `points`' affair.
 """
-
-import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.ni.stream import Block, StreamGap
 from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.cable_checks import CableWatch
 from jointbench.station.measure.points import Points
-from jointbench.station.measure.session_log import gap_entry, gap_words
+from jointbench.station.measure.session_log import gap_words
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.trigger import TriggerWatch
 
@@ -24,10 +22,10 @@ class MeasureSession:
         self.record = record
         self._bench = bench
         self._trigger = TriggerWatch(
-            bench.plan.hits, bench.channels, bench.stream.sample_rate
+            bench.plan.hits, bench.channels, bench.recorder.sample_rate
         )
         self._points = Points(bench, self.record, self._trigger)
-        self._cables = CableWatch(bench.stream, bench.live, bench.watcher)
+        self._cables = CableWatch(bench.recorder, bench.watcher)
 
     def run(self) -> None:
         """Measure until the plan is done.
@@ -37,13 +35,13 @@ class MeasureSession:
                 no hit comes for longer than the plan waits.
         """
         self._points.tighten()
-        for item in self._bench.stream.items():
+        for item in self._bench.recorder.items():
             if self.record.interrupted:
                 return
             if isinstance(item, StreamGap):
                 self._gap(item)
             elif isinstance(item, Block):
-                self._block(item)
+                self._block(item.samples)
             else:
                 self._points.wait(item.samples)
             command = self._bench.watcher.command()
@@ -51,13 +49,10 @@ class MeasureSession:
                 self._points.obey(command)
             if self.record.interrupted or self._points.over:
                 return
+        self.record.interrupted = True
 
-    def _block(self, block: Block) -> None:
-        bench = self._bench
-        bench.live.append(block.samples, segment=block.segment, first=block.first)
-        # Judged is what was stored, to the last bit.
-        samples = block.samples.astype(np.float32).astype(np.float64)
-        bench.watcher.block(samples)
+    def _block(self, samples: FloatArray) -> None:
+        self._bench.watcher.block(samples)
         if self._cables.look(samples.shape[1]):
             self._trigger.break_off()
             if self._trigger.armed and not self._cables.open:
@@ -66,7 +61,7 @@ class MeasureSession:
 
     def _hear(self, samples: FloatArray) -> None:
         if not self._trigger.armed:
-            if self._trigger.listen(samples, stored=self._bench.live.samples):
+            if self._trigger.listen(samples, stored=self._bench.recorder.samples):
                 self._points.begin()
             return
         cut = self._trigger.feed(samples)
@@ -80,7 +75,6 @@ class MeasureSession:
     def _gap(self, gap: StreamGap) -> None:
         """Note what is missing; a hit cut short by it is late, and asked for again."""
         self.record.gaps.append(gap)
-        self._bench.live.log(gap_entry(gap))
         self._bench.watcher.say(gap_words(gap))
         cut = self._trigger.break_off()
         if cut is not None and not self._points.on_trial:

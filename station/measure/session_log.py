@@ -62,19 +62,6 @@ def check_entry(check: Check) -> Entry:
     }
 
 
-def gap_entry(gap: StreamGap) -> Entry:
-    """Return the entry of something that is missing."""
-    return {
-        "kind": "gap",
-        "what": gap.kind,
-        "segment": gap.segment,
-        "first_sample": gap.first,
-        "samples": gap.samples,
-        "seconds": round(gap.seconds, 3),
-        "words": gap.words,
-    }
-
-
 def gap_words(gap: StreamGap) -> str:
     """Return a gap in one line for the operator."""
     if gap.kind == "lost":

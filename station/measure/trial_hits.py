@@ -55,7 +55,7 @@ class Trials:
         """Propose settings with reasons, and use those that the plan leaves open."""
         self.record.proposals = self.trigger.settle(self._fit)
         for proposal in self.record.proposals:
-            self.bench.live.log(setting_entry(proposal))
+            self.bench.recorder.log(setting_entry(proposal))
             self.bench.watcher.say(
                 f"{proposal.name} {proposal.value:.4g}: {proposal.reason}"
             )

@@ -73,9 +73,13 @@ class TriggerWatch:
         """Take a block; return a hit that it completes."""
         return None if self._cutter is None else self._cutter.feed(samples)
 
-    def break_off(self) -> CutHit | None:
-        """Restart after a gap; return the hit that it cut short, if any."""
-        return None if self._cutter is None else self._cutter.break_off()
+    def break_off(self, stored: int | None = None) -> CutHit | None:
+        """Restart after a gap; return the hit that it cut short, if any.
+
+        Args:
+            stored: samples stored before the next that is fed; None for those fed.
+        """
+        return None if self._cutter is None else self._cutter.break_off(stored)
 
     def judge(self, cut: CutHit, point: str, weak_force: float | None) -> Hit:
         """Judge a hit by itself.

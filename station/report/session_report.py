@@ -55,25 +55,18 @@ def run_report(
     json_target: str | None,
     run: StageRun | None = None,
 ) -> Path:
-    """Write the report of `session` next to it, or to `out`.
+    """Write the report of `session` next to it, or to `out`, and name it.
 
-    Modes come from existing results, see `stored_results`; without results they are
-    extracted now, and `run` stores the stages. A file of FRFs, or results made of
-    some, is reported as well.
+    See `session_page`.
     """
     target = out or report_path(session)
     given = (session, model, geometry, results)
     read = [path for path in given if path is not None]
     check_outputs(read, [target, json_target])
-    points = None if geometry is None else read_toml(geometry, Geometry)
-    bench = None if model is None else read_toml(model, BenchModel)
-    if is_frf_input(session):
-        analysis = analyse_frfs(session, results, run)
-    else:
-        content = open_session(session)
-        stored = stored_results(session, content.recordings, results)
-        analysis = analyse_session(content, bench, stored, run)
-    write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
+    page, analysis = session_page(
+        session, model=model, geometry=geometry, results=results, run=run
+    )
+    write_report(page, target)
     console(json_target).print(f"report: {target}")
     runs = [
         {"preload_n": one.preload, "results": one.run or None}
@@ -86,6 +79,32 @@ def run_report(
     }
     write_json(json_target, content_json)
     return target
+
+
+def session_page(
+    session: Path,
+    *,
+    model: Path | None = None,
+    geometry: Path | None = None,
+    results: Path | None = None,
+    run: StageRun | None = None,
+) -> tuple[Report, SessionAnalysis]:
+    """Analyse a session and arrange the result as a report.
+
+    Modes come from existing results, see `stored_results`; without results they are
+    extracted now, and `run` stores the stages. A file of FRFs, or results made of
+    some, is reported as well.
+    """
+    points = None if geometry is None else read_toml(geometry, Geometry)
+    bench = None if model is None else read_toml(model, BenchModel)
+    if is_frf_input(session):
+        analysis = analyse_frfs(session, results, run)
+    else:
+        content = open_session(session)
+        stored = stored_results(session, content.recordings, results)
+        analysis = analyse_session(content, bench, stored, run)
+    page = compose(analysis, bench, title=session.stem, geometry=points)
+    return page, analysis
 
 
 def compose(

@@ -5,6 +5,7 @@ Whatever is simulated comes through NI's client from a simulated chassis, so tha
 session that is recorded went the way that a session at the bench goes.
 """
 
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -138,6 +139,8 @@ def open_runs(url: str) -> RunSequence:
 
 
 def _require_scheme(url: str) -> None:
+    # The simulated chassis closes its connections; gRPC would report each on stderr.
+    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
     scheme = url.partition(":")[0]
     if scheme in SCHEMES:
         return

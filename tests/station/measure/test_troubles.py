@@ -129,6 +129,27 @@ def test_a_polite_kill_leaves_a_finished_file(tmp_path: Path, name: str) -> None
 
 
 @POSIX
+def test_a_session_whose_program_is_killed_is_finished_by_its_recording_process(
+    tmp_path: Path,
+) -> None:
+    """After ``kill -9`` the file is finished, with the hits that were judged."""
+    with start(tmp_path, "sim:plates?speed=4") as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            if line.startswith("hit 2"):
+                process.kill()
+                break
+        # The recording process holds the output until it leaves.
+        process.communicate(timeout=60)
+    assert {p.name for p in tmp_path.iterdir()} == {"s.h5", "plan.toml"}
+    session = read_session(tmp_path / "s.h5")
+    assert sum(len(recording.hits) for recording in session.recordings) == 2
+    (end,) = [dict(s.detail) for s in session.provenance if s.name == "end"]
+    assert end["interrupted"] is True
+    assert "the measuring program ended" in str(end["reason"])
+
+
+@POSIX
 def test_a_terminal_that_is_closed_leaves_a_finished_file(tmp_path: Path) -> None:
     """Its end sends SIGHUP, and from then on every line on the screen fails."""
     terminal, far = os.openpty()

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""Stiffness and damping of joints from measured modes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.lumped.identified import Identification, JointParameter
+from jointbench.analysis.structures.identification.joint_result import (
+    StructureIdentification,
+)
+from jointbench.signal.modal.modes import ModalSettings
+from jointbench.station.files.input_files import read_recordings
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.joints.identify_run import identified_structure
+from jointbench.station.joints.model_kind import describes_structure
+from jointbench.station.library.measurements import Files, Measurement, paths_of
+from jointbench.station.library.result_view import ResultView, Shown
+from jointbench.station.pipeline.chain import ChainSettings, run_chain
+from jointbench.station.pipeline.link_stage import identify_joint
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class IdentifiedJoints(Shown):
+    """Identified parameters of the joints.
+
+    Attributes:
+        result: of a lumped bench or of a meshed structure.
+    """
+
+    result: Identification | StructureIdentification
+
+    @property
+    def parameters(self) -> tuple[JointParameter, ...]:
+        """Stiffness and damping of every link or direction."""
+        return self.result.parameters
+
+    def __getitem__(self, name: str) -> JointParameter:
+        """Return a parameter by name, ``"joint.stiffness"``.
+
+        Raises:
+            UsageError: there is none of that name.
+        """
+        for one in self.parameters:
+            if one.name == name:
+                return one
+        known = ", ".join(one.name for one in self.parameters)
+        raise UsageError(f"no parameter {name!r}; identified are {known}")
+
+    @property
+    def view(self) -> ResultView:
+        """One row a parameter, and the basis of the verdict."""
+        rows = [
+            (
+                one.name,
+                parameter_text(one),
+                one.unit,
+                "yes" if one.identifiable else "no",
+            )
+            for one in self.parameters
+        ]
+        reasons = [p.reason for p in self.parameters if p.reason]
+        said = tuple(dict.fromkeys([*self.result.reasons, *reasons]))
+        title = f"Joints: {self.result.verdict.value} {VALUE_LEGEND}"
+        columns = ("parameter", "value", "unit", "identifiable")
+        return ResultView(title, columns, tuple(rows), said)
+
+
+def identify(
+    model: str | Path,
+    source: Measurement | Files = (),
+    *,
+    band: tuple[float, float] | None = None,
+    surface: Sequence[str | Path] = (),
+    cache: str | Path | None = None,
+) -> IdentifiedJoints:
+    """Identify the joints of a lumped bench or of a meshed structure.
+
+    Args:
+        model: bench or structure as TOML.
+        source: recorded measurement or sessions; none where a structure names measured
+            modes itself.
+        band: of the modes [Hz]; None lets the data choose.
+        surface: files of the contact surfaces of a structure with a table [contact].
+        cache: folder that keeps reduced structures.
+
+    Returns:
+        Parameters with intervals, or why they are not identifiable.
+
+    Raises:
+        BadData: the model or a session cannot be used.
+        UsageError: a lumped bench without a session.
+    """
+    path = Path(model)
+    if isinstance(source, Measurement):
+        sessions = source.files
+    else:
+        sessions = () if _is_empty(source) else paths_of(source)
+    if describes_structure(path):
+        done = identified_structure(
+            path,
+            sessions,
+            band=None if band is None else f"{band[0]}:{band[1]}",
+            cache=None if cache is None else Path(cache),
+            surfaces=[Path(one) for one in surface],
+        )
+        return IdentifiedJoints(done.result)
+    if not sessions:
+        raise UsageError(f"'{path}' is a lumped bench and needs measured sessions")
+    settings = ChainSettings(modal=ModalSettings(band=band))
+    recordings = read_recordings(sessions, columns=None, point="1")
+    chain = run_chain(recordings, settings)
+    return IdentifiedJoints(
+        identify_joint(read_toml(path, BenchModel), chain.result.model)
+    )
+
+
+def _is_empty(source: Files) -> bool:
+    return not isinstance(source, str | Path) and not source
