@@ -29,7 +29,7 @@ from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
 )
 from jointbench.analysis.gap.diagnosis.contact_search import (
     fit_contact_base,
-    fit_each,
+    fit_effect,
 )
 from jointbench.analysis.gap.search.screening import screen
 
@@ -41,21 +41,24 @@ def margins(joint: JointCampaign) -> tuple[float, float]:
     """Return the expected margins: over rivals that are no generalisation, over all.
 
     The cost of the best rival less that of the truth, both fitted to the joint without
-    scatter and noise; the base alone is a rival.
+    scatter and noise; the base alone is a rival. Rivals are fitted by decreasing
+    directed test until one is within `NAMEABLE`: what is returned is then a bound.
     """
     bench, base = fit_contact_base(make_contact_bench(joint.clean, joint.law))
     screening = screen(bench, base, bench.candidates)
-    fits = fit_each(bench, base, screening, lambda line: None)
-    own = [f for f in fits if f.candidates[0].effect.name == joint.truth]
-    if not own:
+    truth = [c for c in bench.candidates if c.effect.name == joint.truth]
+    if not truth:
         return 0.0, 0.0
-    rest = [base, *(f for f in fits if f not in own)]
-    fair = [
-        f
-        for f in rest
-        if not f.candidates or joint.truth not in f.candidates[0].effect.generalises
-    ]
-    return tuple(min(f.cost for f in some) - own[0].cost for some in (fair, rest))
+    own = fit_effect(bench, base, screening, truth[0])
+    fair = whole = base.cost - own.cost
+    for rival in screening.leaders(len(bench.candidates)):
+        if rival is truth[0] or fair < NAMEABLE:
+            continue
+        margin = fit_effect(bench, base, screening, rival).cost - own.cost
+        whole = min(whole, margin)
+        if joint.truth not in rival.effect.generalises:
+            fair = min(fair, margin)
+    return fair, min(fair, whole)
 
 
 def outcome(done: ContactDiagnosis, seconds: float) -> Run:

@@ -221,7 +221,6 @@ def test_the_package_root_holds_the_library_and_nothing_else() -> None:
     }
 
 
-
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell", "pwsh"])
 def test_each_shell_has_a_completion_script(shell: str) -> None:
     """The script names the command that it completes."""

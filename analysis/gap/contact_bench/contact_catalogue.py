@@ -180,7 +180,7 @@ def _parallels(data: JointData) -> list[ContactEffect]:
                         0.0,
                         3.0,
                         off=0.0,
-                        far=(0.1, 0.5, 0.9),
+                        far=(0.5,),
                     ),
                 ),
                 source="lubricant or grease in the gap, in parallel with the contacts",

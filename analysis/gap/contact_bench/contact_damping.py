@@ -40,9 +40,7 @@ def damping_effects(data: JointData) -> list[ContactEffect]:
 def _parallel_damping(row: int, direction: str) -> list[ContactEffect]:
     """Return the dampers in parallel with the contact in one direction."""
     scale, site = f"damping_{direction}", Site("joint", direction)
-    amplitude = Parameter(
-        "damping", "N s/m", scale, 0.0, 3.0, off=0.0, far=(0.1, 0.5, 0.9)
-    )
+    amplitude = Parameter("damping", "N s/m", scale, 0.0, 3.0, off=0.0, far=(0.5,))
     kinds: list[tuple[str, Act, str, str]] = [
         (
             "radiated_damping",
@@ -107,7 +105,7 @@ def _microslip() -> ContactEffect:
         Effect(
             "microslip_damping",
             "friction",
-            (Parameter("loss", "-", "loss", 0.0, 50.0, off=0.0, far=(0.3, 1.0, 3.0)),),
+            (Parameter("loss", "-", "loss", 0.0, 50.0, off=0.0, far=(1.0,)),),
             source="loss of Cattaneo-Mindlin contacts grows as Q/(mu P): Johnson, "
             "Contact Mechanics, sec. 7.4",
             separates={

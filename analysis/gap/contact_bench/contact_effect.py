@@ -32,7 +32,7 @@ class Stage(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoadedJoint:
-    """A joint in all its states, as far as it has been computed.
+    """A joint in all its states, as far as it is computed.
 
     Attributes:
         data: states and facts.

@@ -56,7 +56,7 @@ def preload_effects(data: JointData) -> list[ContactEffect]:
                         0.0,
                         0.95,
                         off=0.0,
-                        far=(0.3, 0.7, 0.9),
+                        far=(0.7,),
                     ),
                 ),
                 source="P = n (T - T_0)/(K d) with a locking or damaged thread; ISO "

@@ -133,7 +133,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
         0.0,
         1.5,
         off=0.0,
-        far=(0.02, 0.1, 0.4, 0.8, 0.98),
+        far=(0.1, 0.6, 0.95),
     )
     found = [
         ContactEffect(
@@ -178,7 +178,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                         0.0,
                         5.0,
                         off=0.0,
-                        far=(0.05, 0.3, 1.0),
+                        far=(0.3,),
                     ),
                     Parameter(
                         "closing_preload",

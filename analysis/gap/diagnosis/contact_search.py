@@ -107,7 +107,7 @@ def fit_each(
     fits = []
     for candidate in bench.candidates:
         progress(candidate.label)
-        fits.append(_best_fit(bench, base, screening, candidate))
+        fits.append(fit_effect(bench, base, screening, candidate))
     return sorted(fits, key=lambda f: score(bench, f))
 
 
@@ -118,10 +118,17 @@ def _minimum(
     return minimise(problem, start, FULL, iterations=CONTACT.descent_steps)
 
 
-def _best_fit(
+def fit_effect(
     bench: ContactBench, base: Fit, screening: Screening, candidate: Candidate
 ) -> Fit:
-    """Fit one effect from its directed tests and from far starts."""
+    """Fit one effect from its directed tests and from far starts.
+
+    Args:
+        bench: with the law linearised at the base.
+        base: fit without effects.
+        screening: directed tests of the base.
+        candidate: the effect.
+    """
     problem = make_problem(bench, (candidate,))
     starts = [
         along(problem, base, d, FULL).x

@@ -46,7 +46,7 @@ def test_effects_vanish_at_off() -> None:
             np.testing.assert_array_equal(bench.predict(x, (term,)), plain)
 
 
-def test_a_value_known_from_below_pulls_upwards_only() -> None:
+def test_a_value_known_from_below_acts_upwards_only() -> None:
     """A bound costs nothing where the model is above it, and much where it is below."""
     data = joint(seed=3)
     rows = data.rows
