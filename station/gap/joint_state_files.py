@@ -25,12 +25,12 @@ from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
 from jointbench.station.files.toml_file import first_problem, read_toml
 from jointbench.station.files.toml_text import load_toml
 from jointbench.station.gap.identified_values import identified_value
-from jointbench.station.gap.joint_laws import contact_law, modulus_of
+from jointbench.station.gap.preload_law_tables import contact_law, modulus_of
 from jointbench.station.schemas.joint_states_model import (
     BodiesTable,
+    BoltedJointTable,
     JointStatesModel,
     JointStateTable,
-    JointTable,
 )
 
 CONE_ANGLE = math.radians(30.0)
@@ -225,7 +225,7 @@ def _covariance(
     return matrix
 
 
-def _facts(joint: JointTable, bodies: BodiesTable) -> JointFacts:
+def _facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:
     cone = None
     if joint.head_diameter is not None and joint.clamped_length is not None:
         width = joint.head_diameter + joint.clamped_length * math.tan(CONE_ANGLE)

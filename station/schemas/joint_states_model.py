@@ -42,16 +42,7 @@ from jointbench.station.schemas.positive_quantities import (
 )
 
 Spread = Annotated[float, with_unit("ratio"), Field(ge=0, le=3)]
-Area = Annotated[float, Field(gt=0)]
-QUANTITY_KINDS = {
-    "kn": "stiffness",
-    "kt": "stiffness",
-    "kt2": "stiffness",
-    "kr": "rotational_stiffness",
-    "cn": "damping",
-    "ct": "damping",
-}
-Value = tuple[float, bool]
+_Value = tuple[float, bool]
 """A value [SI], and whether it is only known to be larger."""
 
 
@@ -68,7 +59,7 @@ def _area(value: object) -> object:
 
 
 def _measured(kind: str) -> BeforeValidator:
-    def parse(value: object) -> Value:
+    def parse(value: object) -> _Value:
         if not isinstance(value, str):
             raise ValueError(  # noqa: TRY004
                 f"write the number with its unit, as text: '{value} ...'"
@@ -85,12 +76,12 @@ def _measured(kind: str) -> BeforeValidator:
     return BeforeValidator(parse)
 
 
-class JointTable(StrictTable):
+class BoltedJointTable(StrictTable):
     """What is known of bolts and contact surface."""
 
     bolts: Annotated[int, Field(ge=1, le=1000)] = 1
     diameter: Length
-    area: Annotated[Area, BeforeValidator(_area)]
+    area: Annotated[float, BeforeValidator(_area), Field(gt=0)]
     nut_factor: Annotated[float, Field(gt=0.02, lt=1)] = 0.2
     nut_factor_sd: Spread = 0.2
     torque_scatter: Spread = 0.05
@@ -164,12 +155,12 @@ class JointStateTable(StrictTable):
     time: Annotated[float, with_unit("time"), Field(ge=0)] | None = None
     shear: Force | None = None
     frequency: Frequency | None = None
-    kn: Annotated[Value, _measured("stiffness")] | None = None
-    kt: Annotated[Value, _measured("stiffness")] | None = None
-    kt2: Annotated[Value, _measured("stiffness")] | None = None
-    kr: Annotated[Value, _measured("rotational_stiffness")] | None = None
-    cn: Annotated[Value, _measured("damping")] | None = None
-    ct: Annotated[Value, _measured("damping")] | None = None
+    kn: Annotated[_Value, _measured("stiffness")] | None = None
+    kt: Annotated[_Value, _measured("stiffness")] | None = None
+    kt2: Annotated[_Value, _measured("stiffness")] | None = None
+    kr: Annotated[_Value, _measured("rotational_stiffness")] | None = None
+    cn: Annotated[_Value, _measured("damping")] | None = None
+    ct: Annotated[_Value, _measured("damping")] | None = None
     kn_sd: Spread = 0.05
     kt_sd: Spread = 0.05
     kt2_sd: Spread = 0.05
@@ -201,7 +192,7 @@ class JointStateTable(StrictTable):
 class JointStatesModel(StrictTable):
     """A joint over its preload, with a contact law."""
 
-    joint: JointTable
+    joint: BoltedJointTable
     bodies: BodiesTable
     law: LawTable
     states: tuple[JointStateTable, ...] = ()

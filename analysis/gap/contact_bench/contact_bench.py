@@ -17,8 +17,8 @@ from jointbench.analysis.gap.contact_bench.contact_catalogue import contact_cata
 from jointbench.analysis.gap.contact_bench.contact_damping import contact_probes
 from jointbench.analysis.gap.contact_bench.contact_effect import (
     ContactEffect,
+    EffectPlace,
     LoadedJoint,
-    Stage,
 )
 from jointbench.analysis.gap.contact_bench.contact_layout import (
     ContactLayout,
@@ -178,29 +178,29 @@ class ContactBench:
 
     def joint(self, base: FloatArray, terms: Sequence[Term]) -> LoadedJoint:
         """Return the joint in all its states, shape (6, n_states) of its table."""
-        acts: list[list[tuple[ContactEffect, FloatArray]]] = [[] for _ in Stage]
+        acts: list[list[tuple[ContactEffect, FloatArray]]] = [[] for _ in EffectPlace]
         for term in terms:
             entry = self.entries[term.candidate.label]
-            acts[entry.stage].append((entry, values_of(self, term)))
+            acts[entry.place].append((entry, values_of(self, term)))
         layout, data = self.layout, self.data
         log_p = self.nominal.log_preload + base[layout.state :]
         if layout.nut >= 0:
             log_p = log_p - data.states.by_torque * base[layout.nut]
         joint = replace(self.nominal, law=self.law, log_preload=log_p)
-        for entry, values in acts[Stage.PRELOAD]:
+        for entry, values in acts[EffectPlace.PRELOAD]:
             log_p = log_p + entry.act(values, joint)
         joint = replace(joint, log_preload=log_p)
         turn = sum(
-            (entry.act(values, joint) for entry, values in acts[Stage.LAW]),
+            (entry.act(values, joint) for entry, values in acts[EffectPlace.LAW]),
             np.zeros(log_p.size),
         )
         joint = replace(joint, table=self._contact(base, joint, turn))
-        for entry, values in acts[Stage.STIFFNESS]:
+        for entry, values in acts[EffectPlace.STIFFNESS]:
             joint = replace(joint, table=entry.act(values, joint))
         joint = replace(joint, table=self._damped(base, joint))
-        for entry, values in acts[Stage.DAMPING]:
+        for entry, values in acts[EffectPlace.DAMPING]:
             joint = replace(joint, table=entry.act(values, joint))
-        for entry, values in acts[Stage.VALUE]:
+        for entry, values in acts[EffectPlace.VALUE]:
             joint = replace(joint, table=joint.table * np.exp(entry.act(values, joint)))
         return joint
 

@@ -8,8 +8,8 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.contact_bench.contact_damping import damping_effects
 from jointbench.analysis.gap.contact_bench.contact_effect import (
     ContactEffect,
+    EffectPlace,
     LoadedJoint,
-    Stage,
 )
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.joint_states import (
@@ -101,7 +101,7 @@ def _laws(data: JointData) -> list[ContactEffect]:
                     "prevailing_torque": "measure the preload with a washer",
                 },
             ),
-            Stage.LAW,
+            EffectPlace.LAW,
             _exponent,
         ),
         ContactEffect(
@@ -122,7 +122,7 @@ def _laws(data: JointData) -> list[ContactEffect]:
                 "H - 2: Persson et al. 2005, J. Phys. Condens. Matter 17, R1",
                 separates={"law_exponent": "measure with a finer instrument"},
             ),
-            Stage.LAW,
+            EffectPlace.LAW,
             _cut,
         ),
     ]
@@ -140,7 +140,7 @@ def _laws(data: JointData) -> list[ContactEffect]:
                         "relaxation": "wait at constant torque and repeat",
                     },
                 ),
-                Stage.LAW,
+                EffectPlace.LAW,
                 _flattened,
             )
         )
@@ -189,7 +189,7 @@ def _parallels(data: JointData) -> list[ContactEffect]:
                     "prevailing_torque": "measure the preload with a washer",
                 },
             ),
-            Stage.STIFFNESS,
+            EffectPlace.STIFFNESS,
             _film,
         )
     ]
@@ -210,7 +210,7 @@ def _parallels(data: JointData) -> list[ContactEffect]:
                     "259; without a stated force, Q/mu is found",
                     separates={"film": "level series: slip falls with the level"},
                 ),
-                Stage.STIFFNESS,
+                EffectPlace.STIFFNESS,
                 _slipping,
             )
         )

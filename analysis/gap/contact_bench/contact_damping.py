@@ -7,8 +7,8 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.contact_bench.contact_effect import (
     Act,
     ContactEffect,
+    EffectPlace,
     LoadedJoint,
-    Stage,
 )
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.joint_states import (
@@ -78,7 +78,7 @@ def _parallel_damping(row: int, direction: str) -> list[ContactEffect]:
                 source,
                 {rival: "vacuum; " + _TORQUE},
             ),
-            Stage.DAMPING,
+            EffectPlace.DAMPING,
             act,
             site,
         )
@@ -112,7 +112,7 @@ def _microslip() -> ContactEffect:
                 "radiated_damping": "level series: slip grows with the level",
             },
         ),
-        Stage.DAMPING,
+        EffectPlace.DAMPING,
         _slip_loss,
         Site("joint", "tangential"),
     )
@@ -170,7 +170,7 @@ def _probe(row: int, name: str, shape: FloatArray) -> ContactEffect:
             (Parameter("size", "-", lower=-5.0, upper=5.0, off=0.0),),
             source="shape of a residual",
         ),
-        Stage.VALUE,
+        EffectPlace.VALUE,
         act,
         Site("quantity", QUANTITIES[row].value),
     )

@@ -15,7 +15,7 @@ from jointbench.analysis.gap.model.effect import Effect, Site
 SITE = Site("link", "joint")
 
 
-class Stage(IntEnum):
+class EffectPlace(IntEnum):
     """Place of an effect on the way from the torque to a measured value."""
 
     PRELOAD = 0
@@ -68,12 +68,12 @@ class ContactEffect:
 
     Attributes:
         effect: name, parameters, source and rivals.
-        stage: place at which it acts.
-        act: its physics, from values [SI] and joint to the result of the stage.
+        place: at which it acts.
+        act: its physics, from values [SI] and joint to the result at this place.
         site: where it is reported.
     """
 
     effect: Effect
-    stage: Stage
+    place: EffectPlace
     act: Act
     site: Site = SITE

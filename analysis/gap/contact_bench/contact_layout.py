@@ -66,7 +66,7 @@ class ContactLayout:
 
 
 @dataclass(slots=True)
-class _Rows:
+class _Coordinates:
     """Coordinates while they are collected."""
 
     names: list[str]
@@ -91,7 +91,7 @@ def contact_layout(
         data: its measured quantities and states decide what is there.
         parameters: of the law; those known exactly get a very small sd.
     """
-    rows, facts = _Rows([], [], [], []), data.facts
+    rows, facts = _Coordinates([], [], [], []), data.facts
     for p in parameters:
         rows.add(p.name, p.unit, p.value, max(p.log_sd, 1e-6))
     factor = rows.add("law_factor", "-", 1.0, CONTACT.law_factor_sd)
@@ -128,7 +128,7 @@ def contact_layout(
     )
 
 
-def _assemblies(rows: _Rows, data: JointData) -> tuple[int, IntArray]:
+def _assemblies(rows: _Coordinates, data: JointData) -> tuple[int, IntArray]:
     """Add the deviation of each assembly, then of each quantity in it."""
     count = int(data.states.assembly.max()) + 1
     sd = max(data.facts.reassembly, 1e-6)

@@ -124,6 +124,18 @@ class ContactBenchSettings:
         "prior sd of ln of the size of an effect that geometry and modulus give",
         "a square and a circle differ by 12 %; neighbours add 20 %",
     )
+    known_ratio_sd: float = numerical(
+        0.1,
+        "-",
+        "prior sd of ln of the tangential over the normal compliance of a constriction",
+        "Mindlin's ratio between Poisson ratios of 0.2 and 0.35",
+    )
+    free_ratio_sd: float = numerical(
+        0.5,
+        "-",
+        "the same of bodies and bolts",
+        "bolts are softer in bending, bodies in shear; no campaign set it",
+    )
     bound_sd: float = numerical(
         0.05,
         "-",

@@ -6,8 +6,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.contact_bench.contact_effect import (
     ContactEffect,
+    EffectPlace,
     LoadedJoint,
-    Stage,
 )
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.joint_states import JointData
@@ -63,7 +63,7 @@ def preload_effects(data: JointData) -> list[ContactEffect]:
                 "2320",
                 separates={"law_exponent": _WASHER, "film": _WASHER},
             ),
-            Stage.PRELOAD,
+            EffectPlace.PRELOAD,
             _prevailing,
         )
     )
@@ -78,7 +78,7 @@ def preload_effects(data: JointData) -> list[ContactEffect]:
                     "VDI 2230, sec. 5.4",
                     separates={"plastic_flattening": "bolt force washer"},
                 ),
-                Stage.PRELOAD,
+                EffectPlace.PRELOAD,
                 _falling,
             )
         )
@@ -96,7 +96,7 @@ def preload_effects(data: JointData) -> list[ContactEffect]:
                         "plastic_flattening": "wait at constant torque and repeat"
                     },
                 ),
-                Stage.PRELOAD,
+                EffectPlace.PRELOAD,
                 _relaxed,
             )
         )

@@ -8,8 +8,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.contact_bench.contact_effect import (
     ContactEffect,
+    EffectPlace,
     LoadedJoint,
-    Stage,
 )
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.joint_states import (
@@ -58,7 +58,7 @@ def _at_cones(values: FloatArray, joint: LoadedJoint) -> FloatArray:
     radius, circle = facts.cone_radius or 1.0, facts.bolt_radius or 0.0
     alone = 1.0 / (2.0 * facts.modulus * radius)
     normal = share * (alone + _neighbours(facts)) / facts.bolts
-    tangential = normal / mindlin_ratio(facts.poisson)
+    tangential = normal * _tangential_ratio(values[1:], facts)
     whole = lever(joint)
     table = joint.table * np.exp(min(share, 1.0) * _on_patches(joint))
     # Each cone adds the lever of its own circle, r^2/4.
@@ -83,6 +83,11 @@ def _neighbours(facts: JointFacts) -> float:
     return float(np.sum(1.0 / (np.pi * facts.modulus * apart)))
 
 
+def _tangential_ratio(given: FloatArray, facts: JointFacts) -> float:
+    """Return tangential over normal compliance; Mindlin's where it is not fitted."""
+    return float(given[0]) if given.size else 1.0 / mindlin_ratio(facts.poisson)
+
+
 def _on_patches(joint: LoadedJoint) -> FloatArray:
     """Return the change of ln k where the load is on the cones only, (n_states,).
 
@@ -101,31 +106,25 @@ def _between_asperities(values: FloatArray, joint: LoadedJoint) -> FloatArray:
     """Let the mean plane sink under the load of all asperities."""
     facts = joint.data.facts
     normal = values[0] / (facts.modulus * np.sqrt(facts.area))
-    tangential = normal / mindlin_ratio(facts.poisson)
+    tangential = normal * _tangential_ratio(values[1:], facts)
     return series((normal, tangential, tangential, normal / lever(joint)), joint.table)
 
 
 def _waves(values: FloatArray, joint: LoadedJoint) -> FloatArray:
     """Put the long waves in series until their contact closes."""
-    depth, closing = values
+    depth, closing = values[:2]
     open_share = np.maximum(np.log(closing) - joint.log_preload, 0.0)
     normal = depth * open_share
-    tangential = normal / mindlin_ratio(joint.data.facts.poisson)
+    tangential = normal * _tangential_ratio(values[2:], joint.data.facts)
     return series((normal, tangential, tangential, normal / lever(joint)), joint.table)
 
 
 def series_effects(data: JointData) -> list[ContactEffect]:
     """Return the effects in series with the contact that a joint can show."""
     shear = data.measures(ContactQuantity.TANGENTIAL, ContactQuantity.TANGENTIAL_2)
-    tangential = Parameter(
-        "tangential_ratio",
-        "-",
-        lower=0.2,
-        upper=10.0,
-        starts=(1.3,),
-        transform=Transform.LOG,
-        prior=(1.3, 0.5),
-    )
+    wide = (_ratio(1.3, CONTACT.free_ratio_sd),) if shear else ()
+    near = 1.0 / mindlin_ratio(data.facts.poisson)
+    known = (_ratio(near, CONTACT.known_ratio_sd),) if shear else ()
     amplitude = Parameter(
         "compliance",
         "m/N",
@@ -140,7 +139,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
             Effect(
                 "series_compliance",
                 "stiffness",
-                (amplitude, tangential) if shear else (amplitude,),
+                (amplitude, *wide),
                 source="1/k = 1/k_contact + c of bodies and bolts; VDI 2230, sec. 5.1",
                 separates={
                     "law_exponent": "add a higher torque: a compliance limits the "
@@ -151,19 +150,19 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                 },
                 generalises=("contact_patch", "interaction"),
             ),
-            Stage.STIFFNESS,
+            EffectPlace.STIFFNESS,
             _in_bodies,
         ),
         ContactEffect(
             Effect(
                 "interaction",
                 "stiffness",
-                (_known_size("size"),),
+                (_known_size("size"), *known),
                 source="mean plane sinks by F/(E* sqrt(A)): Zhao and Chang 2001, J. "
                 "Tribol. 123, 857; do not add it to a meshed body, which has it",
                 separates={"series_compliance": "its size is known"},
             ),
-            Stage.STIFFNESS,
+            EffectPlace.STIFFNESS,
             _between_asperities,
         ),
         ContactEffect(
@@ -189,6 +188,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                         starts=(0.1, 0.25, 0.5, 1.0),
                         transform=Transform.LOG,
                     ),
+                    *known,
                 ),
                 source="Westergaard 1939, J. Appl. Mech. 6, A49: compliance lambda/(pi "
                 "E* A) ln(P_c/P) below the preload P_c that closes the waves",
@@ -198,7 +198,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                     "series_compliance": "add a higher torque: waves close",
                 },
             ),
-            Stage.STIFFNESS,
+            EffectPlace.STIFFNESS,
             _waves,
         ),
     ]
@@ -209,7 +209,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                 Effect(
                     "contact_patch",
                     "contact",
-                    (_known_size("share"),),
+                    (_known_size("share"), *known),
                     source="pressure cones: VDI 2230, sec. 5.1; constriction 1/(2 E* "
                     "a) of each: Johnson, Contact Mechanics, sec. 3.6",
                     separates={
@@ -217,11 +217,24 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                         "lower the rocking stiffness more than the normal one"
                     },
                 ),
-                Stage.STIFFNESS,
+                EffectPlace.STIFFNESS,
                 _at_cones,
             )
         )
     return found
+
+
+def _ratio(median: float, sd: float) -> Parameter:
+    """Return the ratio of tangential to normal compliance."""
+    return Parameter(
+        "tangential_ratio",
+        "-",
+        lower=0.2,
+        upper=10.0,
+        starts=(median,),
+        transform=Transform.LOG,
+        prior=(median, sd),
+    )
 
 
 def _known_size(name: str) -> Parameter:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.tail_probabilities import chi2_above, chi2_limit
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
@@ -218,8 +218,3 @@ def _looks_like(candidate: Candidate, drop: float) -> str:
         f"the residual of {candidate.site.name} has the shape '{shape}', which would "
         f"lower chi2 by {drop:.0f}"
     )
-
-
-def cost_chance(bench: ContactBench, fit: Fit) -> float:
-    """Return the chance of a cost as large under noise and priors [-]."""
-    return chi2_above(fit.cost, max(bench.blocks.dof, 1))
