@@ -35,11 +35,12 @@ from jointbench.acquisition.ni.driver_answers import (
     Teds,
 )
 from jointbench.acquisition.ni.error_codes import (
-    NO_PROPERTY,
     NO_TEDS,
     lost_words,
     named_errors,
+    reported,
 )
+from jointbench.acquisition.ni.module_limits import ModuleLimits, device_limits
 from jointbench.acquisition.ni.sensors import (
     Axis,
     Sensor,
@@ -73,6 +74,8 @@ class Chassis:
         self._channel = (
             None if address is None else grpc.insecure_channel(address, _OPTIONS)
         )
+        # Tasks that could not be closed; a device server keeps them, and the device.
+        self._left: list[str] = []
 
     def close(self) -> None:
         """Disconnect from the server."""
@@ -97,6 +100,19 @@ class Chassis:
                 for device in self._system().devices
                 if device.ai_physical_chans.channel_names
             )
+
+    def limits(self) -> dict[str, ModuleLimits]:
+        """Return what each device with analogue inputs can do, by its name.
+
+        Raises:
+            InstrumentError: there is no driver, or the server does not answer.
+        """
+        with named_errors(self.address):
+            return {
+                device.name: device_limits(device)
+                for device in self._system().devices
+                if device.ai_physical_chans.channel_names
+            }
 
     def teds(self, physical: str) -> Teds | None:
         """Return the TEDS of the sensor at an input, or None without one."""
@@ -126,14 +142,31 @@ class Chassis:
                 excitation_current(sensor, axis, offered[_device(axis)])
                 for sensor, axis in axes
             ]
-            task = nidaqmx.Task(name, grpc_options=self._options(name))
+            task = self._new_task(name)
             try:
                 for (sensor, axis), current in zip(axes, currents, strict=True):
                     _add_channel(task, sensor, axis, current)
             except Exception:
                 task.close()
                 raise
-            return AnalogTask(task, self.address)
+            return AnalogTask(task, self.address, name, self._left)
+
+    def _new_task(self, name: str) -> Any:
+        """Return an empty task, after those left over were closed.
+
+        A device server attaches to a task of the same name, for example that of a
+        program that was killed.
+        """
+        while self._left:
+            nidaqmx.Task(
+                self._left[-1], grpc_options=self._options(self._left[-1])
+            ).close()
+            self._left.pop()
+        task = nidaqmx.Task(name, grpc_options=self._options(name))
+        if self._channel is None or not task.channel_names:
+            return task
+        task.close()
+        return nidaqmx.Task(name, grpc_options=self._options(name))
 
     def strike(self, request: bytes) -> bytes | None:
         """Request a stroke of a simulated bench; None for a real one."""
@@ -163,13 +196,7 @@ class Chassis:
         """Return the currents of devices for sensors [A], by name."""
         found = {}
         for name in devices:
-            try:
-                values = self._system().devices[name].ai_current_int_excit_discrete_vals
-            except DaqError as error:
-                if error.error_code not in NO_PROPERTY:
-                    raise
-                values = ()
-            found[name] = tuple(float(value) for value in values if value > 0)
+            found[name] = _currents(self._system().devices[name])
         return found
 
     def _system(self) -> Any:
@@ -186,8 +213,11 @@ class Chassis:
 class AnalogTask:
     """A task that streams; its calls raise this package's errors."""
 
-    def __init__(self, task: Any, address: str | None) -> None:
+    def __init__(
+        self, task: Any, address: str | None, name: str, left: list[str]
+    ) -> None:
         self._task, self._address = task, address
+        self._name, self._left = name, left
         self._reader = AnalogMultiChannelReader(task.in_stream)
         # The shape is set here, which saves a request to the server at every read.
         self._reader.verify_array_shape = False
@@ -320,8 +350,17 @@ class AnalogTask:
         """Stop and clear the task, if it still exists."""
         with suppress(DaqError, RpcError):
             self._task.stop()
-        with suppress(DaqError, RpcError):
+        try:
             self._task.close()
+        except RpcError:
+            self._left.append(self._name)
+        except DaqError:
+            return
+
+
+def _currents(device: Any) -> tuple[float, ...]:
+    values = reported(lambda: device.ai_current_int_excit_discrete_vals)
+    return tuple(float(value) for value in values or () if value > 0)
 
 
 def _device(axis: Axis) -> str:

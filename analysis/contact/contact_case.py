@@ -25,7 +25,9 @@ class ContactConditions:
         damping: definition of the damping coefficient, or None for no damping.
         tangential_load: applied to the joint [N].
         friction: coefficient of friction [-]; matters under a tangential load only.
-        nominal_area: apparent area [m^2], only to check the real area, or None.
+        nominal_area: apparent area [m^2], to check the real area and as reference of
+            the laws of measured surfaces, or None.
+        modulus_sd: standard deviation of E* [Pa], for those laws only.
     """
 
     material: ContactMaterial
@@ -35,6 +37,7 @@ class ContactConditions:
     tangential_load: float = 0.0
     friction: float = 0.3
     nominal_area: float | None = None
+    modulus_sd: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,11 @@
 r"""Run NI's component tests for analogue input against the simulated chassis.
 
     python benchmarks/chassis/run_component_tests.py ../nidaqmx-python \
-        --examples examples.json > docs/chassis-conformance.md
+        --examples ex.json --clients cl.json > docs/chassis-conformance.md
 
-With the verdicts of run_examples.py the page has both. The tests need a copy of
-https://github.com/ni/nidaqmx-python; they run unchanged, in a process of their own.
+With the verdicts of run_examples.py and run_clients.py the page has all of them. The
+tests need a copy of https://github.com/ni/nidaqmx-python; they run unchanged, in a
+process of their own.
 """
 
 import argparse
@@ -58,6 +59,8 @@ REASONS = {
     "-200431": "a measurement that no simulated device offers: temperature, current",
     "-200378": "custom scales that NI's configuration file saves: none are simulated",
     "-200220": "a device of NI's configuration file that is not simulated",
+    "-200170": "a device or input of NI's configuration file that is not simulated",
+    "-200452": "a property of a bridge, which no simulated device has",
     "Could not find an installation of NI-DAQmx": "the test uses the local driver",
 }
 
@@ -133,9 +136,12 @@ def _reason(message: str, text: str) -> str:
     return "; ".join(part for part in parts if part).replace("|", "/")[:200]
 
 
-def page(results: list[Result], examples: list[list[str]]) -> str:
+def page(
+    results: list[Result], examples: list[list[str]], clients: list[list[str]]
+) -> str:
     """Return the page."""
-    lines = [*_head(), *_examples(examples), *_tests(results), *_reasons(results)]
+    lines = [*_head(), *_examples(examples), *_clients(clients), *_tests(results)]
+    lines += _reasons(results)
     return "\n".join(lines) + "\n"
 
 
@@ -159,6 +165,19 @@ def _examples(examples: list[list[str]]) -> list[str]:
         "|---|---|---|",
     ]
     lines += [f"| {n} | {v} | {w.replace('|', '/')} |" for n, v, w in examples]
+    return [*lines, ""]
+
+
+def _clients(clients: list[list[str]]) -> list[str]:
+    lines = [
+        "## Other programs",
+        "Written by `benchmarks/chassis/run_clients.py`. For Rattlesnake, the sequence "
+        "of calls of its acquisition; its windows were not run.",
+        "",
+        "| program | verdict | acquired |",
+        "|---|---|---|",
+    ]
+    lines += [f"| {name} | {verdict} | {words} |" for name, verdict, words in clients]
     return [*lines, ""]
 
 
@@ -205,10 +224,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("copy", type=Path, help="copy of nidaqmx-python")
     parser.add_argument("--examples", type=Path, help="verdicts of run_examples.py")
+    parser.add_argument("--clients", type=Path, help="verdicts of run_clients.py")
     arguments = parser.parse_args()
-    given = arguments.examples
-    examples = json.loads(given.read_text()) if given else []
-    print(page(run(arguments.copy.resolve()), examples), end="")
+    given = (arguments.examples, arguments.clients)
+    examples, clients = (json.loads(p.read_text()) if p else [] for p in given)
+    print(page(run(arguments.copy.resolve()), examples, clients), end="")
 
 
 if __name__ == "__main__":

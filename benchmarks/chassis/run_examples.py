@@ -7,7 +7,6 @@ does. The files need a copy of https://github.com/ni/nidaqmx-python.
 """
 
 import argparse
-import builtins
 import contextlib
 import io
 import json
@@ -17,16 +16,11 @@ import runpy
 import signal
 import sys
 import tempfile
-import time
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
-from typing import Any
 
-import grpc
-import nidaqmx
-import nidaqmx.system
+from client_session import session
 from stand_in import stand_in
 
 from jointbench.simulators.chassis.server import SimulatedChassis
@@ -48,37 +42,6 @@ OTHER_HARDWARE = {
         "the driver itself writes a TDMS file: the chassis writes no files for a client"
     ),
 }
-
-
-@contextlib.contextmanager
-def session(address: str) -> Iterator[None]:
-    """Give every task and system of the client a session at an address."""
-    task, local, enter = nidaqmx.Task, nidaqmx.system.System.local, builtins.input
-    with grpc.insecure_channel(address) as channel:
-
-        def options(name: str) -> nidaqmx.GrpcSessionOptions:
-            return nidaqmx.GrpcSessionOptions(channel, name)
-
-        class RemoteTask(task):  # type: ignore[misc, valid-type]
-            """A task on the chassis."""
-
-            def __init__(self, new_task_name: str = "") -> None:
-                super().__init__(new_task_name, grpc_options=options(new_task_name))
-
-        def system() -> Any:
-            return nidaqmx.system.System.remote(options(""))
-
-        def press_enter(prompt: str = "") -> str:
-            time.sleep(PATIENCE)
-            return ""
-
-        nidaqmx.Task, builtins.input = RemoteTask, press_enter  # type: ignore[assignment, misc]
-        nidaqmx.system.System.local = staticmethod(system)  # type: ignore[method-assign]
-        try:
-            yield
-        finally:
-            nidaqmx.Task, builtins.input = task, enter  # type: ignore[misc]
-            nidaqmx.system.System.local = local  # type: ignore[method-assign]
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
@@ -121,7 +84,7 @@ def main() -> None:
     verdicts = []
     with (
         SimulatedChassis(stand_in(SPEED)) as server,
-        session(server.address),
+        session(server.address, enter=PATIENCE),
         tempfile.TemporaryDirectory() as scratch,
         contextlib.chdir(scratch),
     ):

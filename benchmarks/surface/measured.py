@@ -11,11 +11,11 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.station.files.input_files import read_surfaces
-from jointbench.station.screen.band_limited_words import COLUMNS, band_row
+from jointbench.station.screen.band_limited_words import band_rows
 from jointbench.station.screen.value_text import engineering
 
 NO_SURFACES = {".tx3"}
-HEAD = (*COLUMNS, "waves", "longest waves")
+HEAD = ("surface", "result (95 %)", "waves", "longest waves")
 
 
 def row(path: Path, columns: str | None) -> tuple[str, ...]:
@@ -25,7 +25,7 @@ def row(path: Path, columns: str | None) -> tuple[str, ...]:
         fit = fit_band_limited([surface])
     except JointbenchError as error:
         reason = str(error).replace(str(path), path.name)
-        return (path.name, *["-"] * 6, reason)
+        return (path.name, "-", "-", reason)
     moments = fit.moments
     waves = "-"
     if moments is not None:
@@ -34,7 +34,8 @@ def row(path: Path, columns: str | None) -> tuple[str, ...]:
     said = fit.verdict.value
     if fit.tolerance > 0:
         said += f" (within {100 * fit.tolerance:.0f} %)"
-    return (*band_row(path.name, fit), waves, said)
+    parts = [f"{name} {value} ({ends})" for _, name, value, ends in band_rows("", fit)]
+    return (path.name, "; ".join(parts), waves, said)
 
 
 def main() -> None:

@@ -10,17 +10,28 @@ from scipy.optimize import brentq
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.band_limited.band_records import (
     BandLimitedFit,
+    DrawnModels,
     Interval95,
     RollOffVerdict,
 )
+from jointbench.signal.band_limited.fit_limits import (
+    BEYOND_RATIO,
+    LEAST_HURST,
+    OTHER_FORM,
+    REJECTED,
+    SATURATED_RATIO,
+    WIDEST_TOLERANCE,
+)
 from jointbench.signal.band_limited.line_sample import LineSample, line_sample
+from jointbench.signal.band_limited.map_fit import fit_map
 from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
     expected_deviance,
     longest_wave,
+    measured_density,
     measured_moments,
     modelled_moments,
     spectral_moments,
@@ -30,19 +41,6 @@ from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihoo
 from jointbench.signal.band_limited.tip_width import tip_surprise
 from jointbench.signal.band_limited.weighted_draws import WeightedDraws, draw
 
-SATURATED_RATIO = 5.41
-"""Twice the gain in log-likelihood by a roll-off above which it is named: a level of
-1 % for a parameter at the end of its range [-]."""
-BEYOND_RATIO = 2.71
-"""The same for the limit that a roll-off is beyond: 95 % on one side [-]."""
-REJECTED = 3.1
-"""Standard deviations of the deviance above which a model is rejected [-]: 0.1 %."""
-WIDEST_TOLERANCE = 0.3
-"""Widest tolerance of ln density of a self-affine surface [-]: a spectrum within 30 %
-of a power law at every wavelength."""
-LEAST_HURST = 0.03
-"""H at or below which heights are unrelated, or noise [-]."""
-_OTHER_FORM = "the spectrum differs from every one with a roll-off and a short cut"
 _STARTS = (0.02, 0.3)
 """Roll-offs over the length from which the search starts [-]."""
 _SMALL = (0.3, 0.1)
@@ -79,9 +77,9 @@ class _Found:
 
 @one_thread()
 def fit_band_limited(surfaces: Sequence[Surface], *, degree: int = 1) -> BandLimitedFit:
-    """Fit a band-limited self-affine surface to the lines of a surface.
+    """Fit a band-limited self-affine surface to lines or to a map, see `fit_map`.
 
-    The long waves enter by the exact likelihood of means of blocks, the others by
+    The long waves of lines enter by the exact likelihood of means of blocks, others by
     Whittle's likelihood of the spectrum, with the filters of the instrument as stated.
     Blur and noise beyond them are fitted. A likelihood-ratio test decides whether the
     surface rolls off.
@@ -102,6 +100,11 @@ def fit_band_limited(surfaces: Sequence[Surface], *, degree: int = 1) -> BandLim
         Whittle, Ark. Mat. 2 (1953) 423. Roll-off: Self and Liang, J. Am. Stat. Assoc.
         82 (1987) 605, for a parameter at the end of its range.
     """
+    first = surfaces[0]
+    if len(surfaces) == 1 and isinstance(first, Areal):
+        mapped = fit_map(first, degree=max(1, degree))
+        if mapped is not None:
+            return mapped
     sample = line_sample(surfaces, degree=max(1, degree))
     found = _both(SpectralLikelihood(sample))
     excess = _excess(found)
@@ -109,7 +112,7 @@ def fit_band_limited(surfaces: Sequence[Surface], *, degree: int = 1) -> BandLim
         found = _tolerated(sample, found)
     if found.likelihood.tolerance > WIDEST_TOLERANCE:
         share = 100 * found.likelihood.tolerance
-        return _no_band(found, f"{_OTHER_FORM} by {share:.0f} %")
+        return _no_band(found, f"{OTHER_FORM} by {share:.0f} %")
     fit = _described(found)
     if fit.hurst is not None and fit.hurst.value <= LEAST_HURST:
         return _no_band(found, "the spectrum is level at all wavelengths")
@@ -208,6 +211,7 @@ def _no_band(found: _Found, reason: str) -> BandLimitedFit:
         model=None,
         pitch=sample.pitch,
         scale=sample.scale,
+        density=measured_density(sample),
     )
 
 
@@ -244,6 +248,10 @@ def _described(found: _Found) -> BandLimitedFit:
         model=model,
         pitch=sample.pitch,
         scale=sample.scale,
+        draws=DrawnModels(
+            tuple(likelihood.model(one) for one in draws.parameters),
+            tuple(float(one) for one in draws.weight),
+        ),
     )
 
 

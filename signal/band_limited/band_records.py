@@ -4,6 +4,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.signal.band_limited.lay_spectrum import LaySpectrum
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 
 
@@ -43,6 +45,10 @@ class Interval95:
 class RoughnessMoments:
     """Root mean squares along a line, of waves between two wavelengths.
 
+    Of a map the waves are those of all directions, and slope and curvature those along
+    a line, averaged over directions: the root of half the mean square gradient, and of
+    3/8 of the mean square Laplacian.
+
     Attributes:
         shortest: wavelength [m].
         longest: wavelength [m].
@@ -62,8 +68,67 @@ class RoughnessMoments:
 
 
 @dataclass(frozen=True, slots=True)
+class DrawnModels:
+    """Models of the posterior of a fit.
+
+    Attributes:
+        models: in units of the fit's scale and pitch.
+        weight: of each, sum 1.
+    """
+
+    models: tuple[BandLimited, ...]
+    weight: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineDensity:
+    """Two-sided density of heights along a line, known filters divided out.
+
+    Attributes:
+        wavenumber: of the bins [rad/m], shape (n_bins,).
+        density: [m^3/rad], same shape.
+        count: independent ordinates in each [-], same shape.
+    """
+
+    wavenumber: FloatArray
+    density: FloatArray
+    count: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "wavenumber", "density", "count")
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceLay:
+    """Direction of a map along which heights vary least, and what differs across it.
+
+    Attributes:
+        angle: of the lay from the rows towards the columns [rad], within -pi/2 to pi/2
+            for its value.
+        ratio: wavelength along over that across of equal density [-], in the middle of
+            the band.
+        hurst_along: H of lines along the lay [-].
+        hurst_across: H of lines across it [-].
+        roll_off_along: wavelength above which the spectrum is level along the lay [m];
+            None where the map does not show it.
+        roll_off_across: the same across it [m].
+    """
+
+    angle: Interval95
+    ratio: Interval95
+    hurst_along: Interval95
+    hurst_across: Interval95
+    roll_off_along: Interval95 | None
+    roll_off_across: Interval95 | None
+
+
+@dataclass(frozen=True, slots=True)
 class BandLimitedFit:
-    """The band-limited self-affine surface that describes a line of heights.
+    """The band-limited self-affine surface that describes a line or a map of heights.
+
+    Of a map with a lay, `hurst` and `roll_off` are those between both directions, and
+    `lay` has each; slope and curvature are means over all directions.
 
     Attributes:
         verdict: on the longest waves.
@@ -82,9 +147,16 @@ class BandLimitedFit:
         noise: standard deviation of each height [m].
         moments: within the stated wavelengths; None where no wave is resolved.
         tolerance: by which ln density differs from the model beyond its scatter [-].
-        model: in units of `scale` and `pitch`; None without a self-affine band.
+        model: spectrum of a line in units of `scale` and `pitch`; None without a
+            self-affine band.
         pitch: [m].
         scale: [m].
+        draws: of the model; None without a self-affine band.
+        density: within the wavelengths of the moments; None where the model has it.
+        mapped: whether a map was fitted over both wavenumbers.
+        lay: of a map; None for profiles and for maps without one.
+        map_model: spectrum of a map over both wavenumbers, in the same units; None for
+            lines.
     """
 
     verdict: RollOffVerdict
@@ -101,3 +173,8 @@ class BandLimitedFit:
     model: BandLimited | None
     pitch: float
     scale: float
+    draws: DrawnModels | None = None
+    density: LineDensity | None = None
+    mapped: bool = False
+    lay: SurfaceLay | None = None
+    map_model: LaySpectrum | None = None

@@ -5,7 +5,11 @@ import numpy as np
 from scipy.special import digamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.band_limited.band_records import Interval95, RoughnessMoments
+from jointbench.signal.band_limited.band_records import (
+    Interval95,
+    LineDensity,
+    RoughnessMoments,
+)
 from jointbench.signal.band_limited.line_sample import LineSample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
@@ -13,7 +17,7 @@ from jointbench.signal.band_limited.weighted_draws import WeightedDraws
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 
 _NODES = 300
-_RESOLVED = 4.0
+RESOLVED = 4.0
 """Shortest wavelength of the moments [samples]: two samples are alias and noise."""
 _CUT_HALF = 2 * np.pi / np.sqrt(2 * np.log(2))
 """Wavelength at which a Gaussian blur transmits half the amplitude, over its width."""
@@ -59,7 +63,7 @@ def shortest_wave(likelihood: SpectralLikelihood, model: BandLimited) -> float:
     top = omega[clear[0] - 1] if clear.size and clear[0] > 0 else omega[-1]
     if clear.size and clear[0] == 0:
         top = omega[0]
-    bounds = (_RESOLVED, 2 * np.pi / transfer.highest, 2 * np.pi / float(top))
+    bounds = (RESOLVED, 2 * np.pi / transfer.highest, 2 * np.pi / float(top))
     return float(max(bounds))
 
 
@@ -95,14 +99,11 @@ def measured_moments(sample: LineSample) -> RoughnessMoments | None:
 
     Known filters are divided out; the scatter of each bin is that of its ordinates.
     """
-    short = max(_RESOLVED, 2 * np.pi / sample.transfer.highest)
-    long = longest_wave(sample)
-    omega, power, count = _whole_spectrum(sample)
-    inside = (omega <= 2 * np.pi / short) & (omega >= 2 * np.pi / long)
-    if np.count_nonzero(inside) < 4 or not long > 2 * short:
+    found = _resolved_spectrum(sample)
+    if found is None:
         return None
-    omega, count = omega[inside], count[inside]
-    power = power[inside] / sample.transfer.power(omega)
+    omega, power, count = found
+    short, long = _measured_ends(sample)
     width = np.gradient(omega)
     parts = []
     for k in (0, 2, 4):
@@ -113,6 +114,34 @@ def measured_moments(sample: LineSample) -> RoughnessMoments | None:
         value = float(np.sqrt(total))
         parts.append(Interval95(value, float(value / reach), float(value * reach)))
     return _in_metres(sample, (short, long), parts, modelled=False)
+
+
+def measured_density(sample: LineSample) -> LineDensity | None:
+    """Return the measured spectrum within those wavelengths; None as for the sums."""
+    found = _resolved_spectrum(sample)
+    if found is None:
+        return None
+    omega, power, count = found
+    unit = sample.scale**2 * sample.pitch
+    return LineDensity(omega / sample.pitch, power * unit, count)
+
+
+def _measured_ends(sample: LineSample) -> tuple[float, float]:
+    """Return the shortest and the longest wavelength of the sums [samples]."""
+    return max(RESOLVED, 2 * np.pi / sample.transfer.highest), longest_wave(sample)
+
+
+def _resolved_spectrum(
+    sample: LineSample,
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Return the spectrum within the wavelengths of the sums, filters divided out."""
+    short, long = _measured_ends(sample)
+    omega, power, count = _whole_spectrum(sample)
+    inside = (omega <= 2 * np.pi / short) & (omega >= 2 * np.pi / long)
+    if np.count_nonzero(inside) < 4 or not long > 2 * short:
+        return None
+    omega = omega[inside]
+    return omega, power[inside] / sample.transfer.power(omega), count[inside]
 
 
 def _whole_spectrum(

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The blur that a stylus of known radius causes on a surface."""
 
+from typing import Protocol
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.band_limited.line_sample import LineSample
+from jointbench.signal.band_limited.known_transfer import KnownTransfer
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.surface.structure_constant import spectral_integral
 
@@ -18,7 +20,26 @@ _SMOOTHEST = 0.95
 """Highest H at which S at short lags follows from the power law [-]."""
 
 
-def contact_length(model: BandLimited, sample: LineSample) -> float:
+class TracedSample(Protocol):
+    """Heights of lines or of a map, in units of their pitch and root mean square."""
+
+    @property
+    def transfer(self) -> KnownTransfer:
+        """What the instrument is known to do."""
+        ...
+
+    @property
+    def scale(self) -> float:
+        """Root mean square of the heights [m]."""
+        ...
+
+    @property
+    def pitch(self) -> float:
+        """Distance of neighbours [m]."""
+        ...
+
+
+def contact_length(model: BandLimited, sample: TracedSample) -> float:
     """Return the lag at which the tip bends as the surface does [samples].
 
     There the root of S is the square of the lag over the radius: a parabola and a
@@ -33,7 +54,7 @@ def contact_length(model: BandLimited, sample: LineSample) -> float:
     return float((steepness * radius**2) ** (1 / (4 - exponent)))
 
 
-def tip_surprise(model: BandLimited, sample: LineSample) -> float:
+def tip_surprise(model: BandLimited, sample: TracedSample) -> float:
     """Return how far the blur is from that of the stated tip, in standard deviations.
 
     Zero without a stated radius.

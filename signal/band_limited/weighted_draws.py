@@ -19,7 +19,7 @@ _LEAST_SHARE = 0.02
 """Share of the best model's weight below which a model is left out [-]."""
 _WIDER = 1.3
 """Standard deviations of the draws over those by Fisher's information [-]."""
-_WIDEST_ROLL_OFF = 1.5
+WIDEST_ROLL_OFF = 1.5
 """Largest standard deviation of the draws of ln roll-off [-]."""
 _FREEDOM = 6.0
 """Degrees of freedom of the draws, for the tails of the likelihood [-]."""
@@ -87,7 +87,7 @@ def _about(likelihood: SpectralLikelihood, found: Maximum) -> WeightedDraws:
     """
     information = found.information.copy()
     free = np.diag(information) > 0
-    information[2, 2] += free[2] / _WIDEST_ROLL_OFF**2
+    information[2, 2] += free[2] / WIDEST_ROLL_OFF**2
     strength = np.diag(information)
     count = int(free.sum())
     size = np.sqrt(strength[free])

@@ -36,23 +36,24 @@ def noise_part(
     drawn = _noise_draws(surface, texture, noise, pairs)
     names = [name for name, value in values.items() if value is not None]
     base = np.array([values[name] for name in names], dtype=np.float64)
-    means, spread = [base], np.zeros(base.size)
-    for dose in _DOSES:
-        all_of = np.array(
+    doses = [
+        np.array(
             [
-                _numbers(texture, sign * np.sqrt(dose) * one, names, base)
+                [_numbers(texture, sign * root * one, names, base) for sign in (1, -1)]
                 for one in drawn
-                for sign in (1, -1)
             ]
         )
-        means.append(all_of.mean(axis=0))
-        if dose == 1.0:
-            spread = all_of.std(axis=0, ddof=1)
-    straight = means[1] - means[0]
-    curved = 3 * (means[1] - means[0]) - (means[2] - means[0])
-    scatter = np.hypot(spread, (curved - straight) / 2)
+        for root in np.sqrt(_DOSES)
+    ]
+    added = [cases.mean(axis=1) - base for cases in doses]
+    straight, curved = added[0].mean(axis=0), 3 * added[0] - added[1]
+    bias = curved.mean(axis=0)
+    # Scatter by noise, of the extrapolation and of its finite number of draws.
+    by_noise = doses[0].reshape(-1, base.size).std(axis=0, ddof=1)
+    of_mean = curved.std(axis=0, ddof=1) / np.sqrt(len(drawn))
+    scatter = np.sqrt(by_noise**2 + of_mean**2 + ((bias - straight) / 2) ** 2)
     return (
-        dict(zip(names, curved.tolist(), strict=True)),
+        dict(zip(names, bias.tolist(), strict=True)),
         dict(zip(names, scatter.tolist(), strict=True)),
     )
 

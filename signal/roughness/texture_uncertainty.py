@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Standard uncertainty of texture parameters: noise, filter, instrument, repeats."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from jointbench.acquisition.records.surfaces import Profile, Surface
+from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 from jointbench.signal.roughness.height_noise import height_noise
 from jointbench.signal.roughness.noise_extrapolation import noise_part
 from jointbench.signal.roughness.texture_operators import surface_texture
@@ -24,6 +25,11 @@ FILTER_TOLERANCE = 0.05
 of their values is taken as rectangular."""
 _MAP_SIDE = 320
 """Side of the piece of a map on which components are determined [points]."""
+_OFFSETS, _MAP_OFFSETS = (0.5, 1.0, 1.5), (0.6, 1.3)
+"""Deviations of a cause at which parameters are computed [standard deviations]."""
+_HEIGHT_POWER = {"sk": 0, "ku": 0, "mrk1": 0, "mrk2": 0, "td": 0, "sm": 0, "al": 0}
+_HEIGHT_POWER |= {"tr": 0, "dr": 2}
+"""Powers of the height scale in the parameters; 1 for all others."""
 _ABSOLUTE = frozenset({"sk", "ku", "mrk1", "mrk2", "td"})
 """Parameters about zero or with an end: their deviations are no shares of the value."""
 
@@ -97,11 +103,9 @@ def _components(
 ) -> dict[str, TextureValue]:
     """Return the uncertainty of each parameter of a surface by its causes."""
     parts = {
-        "filter": _filter_part(surface, settings),
-        "height": _difference(
-            *(_of_scaled(texture, 1 + sign * errors.height) for sign in (1, -1))
-        ),
-        "pitch": _pitch_part(surface, settings, errors.pitch),
+        "filter": _filter_part(surface, values, settings),
+        "height": _height_part(values, errors.height),
+        "pitch": _pitch_part(surface, values, settings, errors.pitch),
     }
     bias, spread = noise_part(surface, texture, values, errors.noise)
     return {
@@ -131,64 +135,108 @@ def _scaled(
     return replace(one, value=value, bias=share * one.bias, parts=parts)
 
 
-def _filter_part(surface: Surface, settings: TextureSettings) -> dict[str, float]:
+def _filter_part(
+    surface: Surface, values: Values, settings: TextureSettings
+) -> dict[str, float]:
     """Return what nesting indices within their tolerance change."""
-    both: list[dict[str, float]] = []
-    for k, index in enumerate((settings.short, settings.long)):
-        if index is None:
-            continue
-        ends = []
-        for sign in (1, -1):
-            stretch = [1.0, 1.0]
-            stretch[k] = 1 + sign * FILTER_TOLERANCE
-            ends.append(_at(surface, settings, (stretch[0], stretch[1])))
-        both.append(_difference(*ends))
+    width = FILTER_TOLERANCE / np.sqrt(3)
+
+    def at(short: float, long: float) -> Values:
+        stretch = (1 + short, 1 + long)
+        return texture_parameters(
+            surface_texture(surface, settings, stretch=stretch)
+        ).values
+
+    both = []
+    if settings.short is not None:
+        both.append(_spread(surface, values, lambda off: at(width * off, 0.0)))
+    if settings.long is not None:
+        both.append(_spread(surface, values, lambda off: at(0.0, width * off)))
     return {
-        name: float(np.sqrt(sum(one.get(name, 0.0) ** 2 for one in both) / 3))
+        name: float(np.sqrt(sum(one.get(name, 0.0) ** 2 for one in both)))
         for name in {name for one in both for name in one}
     }
 
 
-def _at(
-    surface: Surface, settings: TextureSettings, stretch: tuple[float, float]
-) -> Values:
-    return texture_parameters(
-        surface_texture(surface, settings, stretch=stretch)
-    ).values
+def _height_part(values: Values, error: float) -> dict[str, float]:
+    """Return what one standard deviation of the height scale changes."""
+    return {
+        name: error * _HEIGHT_POWER.get(name[1:], 1) * abs(value)
+        for name, value in values.items()
+        if value is not None
+    }
 
 
 def _pitch_part(
-    surface: Surface, settings: TextureSettings, error: float
+    surface: Surface, values: Values, settings: TextureSettings, error: float
 ) -> dict[str, float]:
-    """Return what one standard deviation of the lateral scale changes."""
+    """Return what one standard deviation of the lateral scale changes.
+
+    The evaluation length or area covers another piece of the surface with it.
+    """
     if not error:
         return {}
-    ends = []
-    for sign in (1, -1):
-        factor = 1 + sign * error
-        if isinstance(surface, Profile):
-            other: Surface = replace(surface, spacing=surface.spacing * factor)
-        else:
-            down, along = surface.spacing
-            other = replace(surface, spacing=(down * factor, along * factor))
-        ends.append(_at(other, settings, (1.0, 1.0)))
-    return _difference(*ends)
+    scale = _spread(
+        surface, values, lambda off: _of_pitch(surface, settings, off * error)
+    )
+    if isinstance(surface, Profile):
+        return scale
+    margin = _margin_part(surface, values, settings, error)
+    return {
+        name: float(np.hypot(one, margin.get(name, 0.0))) for name, one in scale.items()
+    }
 
 
-def _of_scaled(texture: Texture, factor: float) -> Values:
-    other = replace(texture, heights=texture.heights * factor)
-    return texture_parameters(other).values
+def _of_pitch(surface: Surface, settings: TextureSettings, error: float) -> Values:
+    """Return the parameters of a surface whose pitch is larger by a share."""
+    if isinstance(surface, Profile):
+        other: Surface = replace(surface, spacing=surface.spacing * (1 + error))
+    else:
+        down, along = surface.spacing
+        other = replace(surface, spacing=(down * (1 + error), along * (1 + error)))
+    return texture_parameters(surface_texture(other, settings)).values
 
 
-def _difference(one: Values, other: Values) -> dict[str, float]:
-    """Return half the absolute differences of the parameters that both have."""
+def _margin_part(
+    areal: Areal, values: Values, settings: TextureSettings, error: float
+) -> dict[str, float]:
+    """Return what a share of the sides of a map changes that lies beyond its area."""
+    cut = [max(1, round(0.5 * error * n)) for n in areal.heights.shape]
+    rows, columns = (
+        slice(k, n - k) for k, n in zip(cut, areal.heights.shape, strict=True)
+    )
+    inner = replace(
+        areal, heights=areal.heights[rows, columns], valid=areal.valid[rows, columns]
+    )
+    found = texture_parameters(surface_texture(inner, settings)).values
+    share = min(1.0, 0.5 * error * max(areal.heights.shape) / min(cut))
+    return {name: share * one for name, one in _apart(values, [found]).items()}
+
+
+def _spread(
+    surface: Surface, values: Values, at: Callable[[float], Values]
+) -> dict[str, float]:
+    """Return the deviation for one standard deviation of a cause.
+
+    Parameters step where an element or the central region changes: several offsets on
+    both sides give the root mean square of such steps, two do not.
+    """
+    offsets = _OFFSETS if isinstance(surface, Profile) else _MAP_OFFSETS
+    cases = [at(sign * one) for one in offsets for sign in (1, -1)]
+    total = 2 * sum(one**2 for one in offsets) / len(cases)
+    found = _apart(values, cases)
+    return {name: one / float(np.sqrt(total)) for name, one in found.items()}
+
+
+def _apart(values: Values, cases: Sequence[Values]) -> dict[str, float]:
+    """Return the root mean square deviation of cases from the value itself."""
     found = {}
-    for name, value in one.items():
-        beside = other[name]
-        if value is None or beside is None:
+    for name, value in values.items():
+        others = [case[name] for case in cases]
+        if value is None or any(one is None for one in others):
             continue
-        apart = value - beside
+        apart = np.array(others, dtype=np.float64) - value
         if name == "Std":
             apart = (apart + np.pi / 2) % np.pi - np.pi / 2
-        found[name] = abs(apart) / 2
+        found[name] = float(np.sqrt(np.mean(apart**2)))
     return found

@@ -5,8 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.signal.roughness.texture_records import Texture
 
+_LARGEST_ERROR = 0.5
+"""Largest standard uncertainty of a scale [-]."""
 Values = dict[str, float | None]
 """Parameters by name, None where not defined."""
 
@@ -84,3 +87,35 @@ class MeasuredTexture:
     def named(self, name: str) -> TextureValue:
         """Return the parameter of a name."""
         return next(one for one in self.values if one.name == name)
+
+
+def instrument_errors(text: str | None) -> InstrumentErrors:
+    """Return the errors as typed: ``"1 %:0.5 %"``, of heights and of the pitch.
+
+    Raises:
+        UsageError: not two parts, or no small positive shares.
+    """
+    if text is None:
+        return NO_ERRORS
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) != 2 or not any(parts):
+        raise UsageError(
+            f"scale errors are {text!r}; give the standard uncertainty of the height "
+            "scale and of the pitch, for example '1 %:0.5 %', '1 %:' or ':0.5 %'"
+        )
+    height, pitch = (_share(part) if part else 0.0 for part in parts)
+    return InstrumentErrors(height, pitch)
+
+
+def _share(text: str) -> float:
+    plain = text.removesuffix("%")
+    try:
+        value = float(plain) / (100 if plain != text else 1)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < _LARGEST_ERROR:
+        raise UsageError(
+            f"scale errors have {text!r}; a share is a number from 0 to "
+            f"{_LARGEST_ERROR:g}, or a percentage as '1 %'"
+        )
+    return value

@@ -137,7 +137,7 @@ def simulate_command(
 ) -> None:
     """Serve simulated NI devices over gRPC.
 
-    Any program that uses nidaqmx over gRPC can connect to them. The parameter
+    Programs that use nidaqmx over gRPC can connect. The parameter
     'interval' is the time between hits [s], 'speed' the simulated time per real time
     [-], 'port' the TCP port. 'sim:sine' has a sine at every input instead of a
     specimen. Stop the server with Ctrl-C.

@@ -40,6 +40,7 @@ from jointbench.station.commands.shared_options.mode_fit_options import (
 from jointbench.station.commands.shared_options.output_options import (
     Debug,
     Force,
+    HtmlReport,
     Json,
     Results,
     SessionOut,
@@ -167,6 +168,7 @@ def surface_command(
     pool: Pool = False,
     weierstrass: WaveRatio = None,
     structure_map: StructureMapFile = None,
+    report: HtmlReport = None,
     iso: Iso = False,
     setting_class: SettingClassName = None,
     robust: Robust = False,
@@ -177,13 +179,15 @@ def surface_command(
     """Fit the fractal parameters D and G of measured surfaces.
 
     D [-] and G [m] come from the structure function. A surface without a scaling
-    range has no D and G. With --iso: the roughness parameters of ISO 21920 and
-    ISO 25178 as well.
+    range has no D and G. The band-limited surface has an H, a roll-off and rms height,
+    slope and curvature; a map with a lay has both directions.
+    With --iso: the roughness parameters of ISO 21920 and ISO 25178 as well.
 
     Examples:
         jointbench surface surface-a.csv surface-b.csv --json surfaces.json
         jointbench surface trace.txt --columns 'x:um,z:um' --form 2 --outliers 6
         jointbench surface a.csv b.csv c.csv --filter '2.5 um:0.8 mm' --pool
+        jointbench surface map.sur --report map.html
         jointbench surface trace.csv --iso --scale-errors '1 %:0.5 %'
     """
     from jointbench.station.commands.surface_command import run_surface
@@ -203,7 +207,9 @@ def surface_command(
             (setting_class, waves, scale_errors), iso=iso, form=form, robust=robust
         ),
     )
-    run_surface(files, columns=columns, json_target=json, options=options)
+    run_surface(
+        files, columns=columns, json_target=json, options=options, report=report
+    )
 
 
 def report_command(

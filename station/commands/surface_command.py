@@ -36,15 +36,22 @@ from jointbench.station.pipeline.surface_stages import (
     with_remedy,
     with_texture,
 )
+from jointbench.station.report.surface_section import surface_report
+from jointbench.station.roughness.reader_words import shown_readers
 from jointbench.station.roughness.texture_screen import measured_of, show_textures
 from jointbench.station.roughness.texture_words import pooled_json
+from jointbench.station.roughness.used_by_contact import COLUMNS as USED_COLUMNS
+from jointbench.station.roughness.used_by_contact import TITLE as USED_TITLE
+from jointbench.station.roughness.used_by_contact import contact_rows
 from jointbench.station.screen.band_limited_words import (
     COLUMNS,
+    TEXT_COLUMNS,
     TITLE,
     band_json,
     band_lines,
-    band_row,
+    band_rows,
 )
+from jointbench.station.screen.page import write_report
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.value_text import engineering, with_sd
 
@@ -55,6 +62,7 @@ def run_surface(
     columns: str | None,
     json_target: str | None,
     options: SurfaceOptions = PLAIN,
+    report: Path | None = None,
 ) -> tuple[SurfaceChain, ...]:
     """Fit every surface in `files` and show the verdicts.
 
@@ -62,7 +70,8 @@ def run_surface(
         UsageError: an option does not apply to a surface.
         BadData: a file cannot be read, or a surface is too small.
     """
-    check_outputs(files, [json_target, options.structure_map])
+    check_outputs(files, [json_target, options.structure_map, report])
+    readers = shown_readers(files, options.texture is not None, console(json_target))
     read = read_surfaces(files, columns=columns)
     given = [surface for _, surface in read]
     require_suited(given, options)
@@ -76,9 +85,14 @@ def run_surface(
         if options.structure_map is not None:
             write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
-        results.append({"file": str(path)} | surface_json(chain))
+        results.append(
+            {"file": str(path)} | surface_json(chain) | readers.get(path, {})
+        )
     pooled = _pooled(given, chains, options.treatment) if options.pool else None
     show_surfaces(chains, json_target, pooled)
+    if report is not None:
+        write_report(surface_report(chains), report)
+        console(json_target).print(f"report: {report}")
     found: dict[str, object] = {"files": results}
     if pooled is not None:
         found["pooled"] = _pooled_json(pooled, chains)
@@ -109,6 +123,11 @@ def show_surfaces(
             screen.print(f"  {chain.surface.name}: {line}", markup=False)
     _show_bands(screen, chains, pooled)
     show_textures(screen, chains, pool=pooled is not None)
+    for chain in chains:
+        if chain.texture is not None:
+            taken = contact_rows(chain.fit, chain.band, chain.texture)
+            title = f"{chain.surface.name}: {USED_TITLE}"
+            screen.print(table(title, USED_COLUMNS, taken, words={0, 2}))
     if pooled is not None:
         for line in (pooled.fit.reason, *pooled.beside.lines):
             screen.print(f"  {pooled.structure.name}: {line}", markup=False)
@@ -121,8 +140,8 @@ def _show_bands(
     found = [(c.surface.name, c.band, c.no_band) for c in chains]
     if pooled is not None:
         found.append((pooled.structure.name, pooled.band, None))
-    rows = [band_row(name, band) for name, band, _ in found]
-    screen.print(table(TITLE, COLUMNS, rows))
+    rows = [row for name, band, _ in found for row in band_rows(name, band)]
+    screen.print(table(TITLE, COLUMNS, rows, words=TEXT_COLUMNS))
     for name, band, reason in found:
         for line in band_lines(band, reason):
             screen.print(f"  {name}: {line}", markup=False)

@@ -22,7 +22,7 @@ from jointbench.station.pipeline.surface_stages import (
     with_band,
     with_remedy,
 )
-from jointbench.station.screen.band_limited_words import COLUMNS, band_lines, band_row
+from jointbench.station.screen.band_limited_words import COLUMNS, band_lines, band_rows
 from jointbench.station.screen.value_text import with_sd
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class FittedSurface(Shown):
             if fit.scaling is None
             else with_sd(fit.scaling.dimension, fit.scaling.dimension_sd)
         )
-        band = band_row(chain.surface.name, chain.band)
+        bands = [row[1:] for row in band_rows("", chain.band)]
         said = [*chain_cautions(chain), fit.reason, *filter(None, [chain.remedy])]
         said += band_lines(chain.band, chain.no_band)
         structure = chain.structure
@@ -76,8 +76,8 @@ class FittedSurface(Shown):
         )
         return ResultView(
             f"{chain.surface.name}: {fit.verdict.value}",
-            ("surface", "D [-]", *COLUMNS[1:]),
-            ((band[0], dimension, *band[1:]),),
+            COLUMNS[1:],
+            (("D [-]", dimension, "-"), *bands),
             tuple(said),
             (plot,),
         )

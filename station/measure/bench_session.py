@@ -17,6 +17,7 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.file_access.file_lock import is_held
+from jointbench.acquisition.ni.module_limits import require_capable
 from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
 from jointbench.acquisition.ni.stream import Counters, StreamSettings
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
@@ -134,6 +135,8 @@ def measure(
         InstrumentError: the chassis refuses or does not come back, or the disk is
             full; the file holds what was recorded until then.
     """
+    limits = opened.chassis.limits()
+    require_capable(plan.sensors, limits, plan.acquisition.sample_rate)
     warnings = _warnings(plan, opened)
     record = Record()
     with patient_interrupt(record):

@@ -48,6 +48,10 @@ STAGE_MODULES = {
         "station.pipeline.contact_prediction",
         "station.pipeline.joint_comparison",
     ),
+    "measured_contact": (
+        "station.contact.measured_words",
+        "station.pipeline.joint_comparison",
+    ),
     "joint": ("station.pipeline.link_stage",),
     "gap": (
         "analysis.gap.catalogue.catalogue",

@@ -25,6 +25,14 @@ _Modulus = Annotated[
     str,
     _option(_MATERIAL, _QUANTITY, "Composite elastic modulus E*, as '29.3 GPa'."),
 ]
+_ModulusSd = Annotated[
+    str,
+    _option(
+        _MATERIAL,
+        _QUANTITY,
+        "Standard deviation of E*, as '3 %', for the laws of measured surfaces.",
+    ),
+]
 _Hardness = Annotated[
     str,
     _option(
@@ -104,8 +112,8 @@ _NominalArea = Annotated[
     _option(
         _SURFACE,
         "NUMBER",
-        "Nominal contact area [m^2], for example 0.01; an upper limit of the real "
-        "area.",
+        "Nominal contact area [m^2], for example 0.01: upper limit of the real area "
+        "and reference of the laws of measured surfaces.",
     ),
 ]
 _FrictionFactor = Annotated[
@@ -212,6 +220,7 @@ class ContactOptions:
     columns: _Columns = None
     poisson: _Poisson = 0.25
     yield_strength: _YieldStrength = None
+    modulus_sd: _ModulusSd = "0 %"
     hardness_sd: _HardnessSd = "0 %"
     friction_factor: _FrictionFactor = 1.0
     friction_factor_sd: _FrictionFactorSd = 0.0

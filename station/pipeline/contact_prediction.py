@@ -2,7 +2,7 @@
 """``jointbench contact``: a rough joint's stiffness from surface, material, preload."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
@@ -11,6 +11,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.records.surfaces import Surface
 from jointbench.analysis.contact.contact_case import ContactCase
 from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.draws import StiffnessInterval
@@ -119,18 +120,7 @@ def surface_of(
     """Return the surface from numbers or from files of one or two surfaces."""
     if files and dimension is None and roughness is None:
         found = read_surfaces(files, columns=columns)
-        if len(found) > FACES:
-            raise UsageError(f"{len(found)} surfaces for one joint; give one or two")
-        faces = found if len(found) == FACES else found * FACES
-        chains = [analyse_surface(s) for _, s in faces]
-        said = [one for chain in chains for one in chain_cautions(chain)]
-        try:
-            whole = equivalent_surface(
-                [outside_filters(c.structure, c.surface) for c in chains]
-            )
-        except BadData as error:  # what is odd about the heights may be the cause
-            raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
-        return replace(whole, cautions=tuple(dict.fromkeys(said)))
+        return fractal_surface([surface for _, surface in found])
     if dimension is None or roughness is None or files:
         raise UsageError(
             "give either --dimension and --roughness, or --surface once (both "
@@ -145,20 +135,25 @@ def surface_of(
     return replace(plain, spread=spread)
 
 
-def swept(
-    request: ContactRequest, surface: ContactSurface, name: str, value: float
-) -> tuple[ContactRequest, ContactSurface]:
-    """Return request and surface with one swept input at `value`, spreads left out."""
-    plain = ContactSurface(surface.dimension, surface.roughness)
-    conditions = replace(request.conditions, hardness_sd=0.0, friction_factor_sd=0.0)
-    bare = replace(request, conditions=conditions)
-    if name == "load":
-        return replace(bare, preloads=(Preload(value, 0.0),)), plain
-    if bare.preloads:
-        bare = replace(bare, preloads=(Preload(bare.preloads[0].value, 0.0),))
-    if name == "dimension":
-        return bare, replace(plain, dimension=value)
-    return bare, replace(plain, roughness=value)
+def fractal_surface(given: Sequence[Surface]) -> ContactSurface:
+    """Return D and G of the equivalent surface of one or two measured ones.
+
+    Raises:
+        BadData: they have no scaling range; the message holds what is odd about them.
+        UsageError: there are more than two.
+    """
+    if len(given) > FACES:
+        raise UsageError(f"{len(given)} surfaces for one joint; give one or two")
+    faces = given if len(given) == FACES else [given[0]] * FACES
+    chains = [analyse_surface(one) for one in faces]
+    said = [one for chain in chains for one in chain_cautions(chain)]
+    try:
+        whole = equivalent_surface(
+            [outside_filters(c.structure, c.surface) for c in chains]
+        )
+    except BadData as error:  # what is odd about the heights may be the cause
+        raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
+    return replace(whole, cautions=tuple(dict.fromkeys(said)))
 
 
 def _of_a_line(dimension: float) -> float:
@@ -172,12 +167,21 @@ def _of_a_line(dimension: float) -> float:
 
 
 def contact_json(
-    points: Sequence[ContactPoint], surface: ContactSurface
+    points: Sequence[ContactPoint],
+    surface: ContactSurface | None,
+    measured: Mapping[str, object] | None = None,
 ) -> dict[str, object]:
-    """Return what the contract promises of ``contact``, and more."""
+    """Return what the contract promises of ``contact``, and more.
+
+    Args:
+        points: of fractal laws.
+        surface: that they take; None without a scaling range.
+        measured: laws of measured surfaces, see `measured_json`.
+    """
     return {
         **contact_surface_json(surface),
         "models": [_point_json(point) for point in points],
+        "measured": measured,
     }
 
 

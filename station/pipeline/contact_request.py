@@ -4,7 +4,7 @@
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.basics.units import STANDARD_GRAVITY, parse_value
@@ -18,6 +18,7 @@ from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.model_terms import ContactTerm, with_term
 from jointbench.analysis.contact.models import ContactModel, Mode
+from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.contact.torque_to_preload import Preload, preload_from_torque
 from jointbench.station.pipeline.contact_options import ContactOptions
 
@@ -92,6 +93,7 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         tangential_load=parse_value(given.tangential_load, "force"),
         friction=given.friction,
         nominal_area=given.nominal_area,
+        modulus_sd=material.effective_modulus * parse_value(given.modulus_sd, "ratio"),
     )
     return ContactRequest(
         models,
@@ -274,6 +276,22 @@ def parse_sweep(text: str) -> Sweep:
         return Sweep(name, tuple(low * (high / low) ** step for step in steps))
     of_surface = 1.0 if low > 2 else 0.0  # a surface's D_s is one higher than a line's
     return Sweep(name, tuple(low + (high - low) * s - of_surface for s in steps))
+
+
+def swept(
+    request: ContactRequest, surface: ContactSurface, name: str, value: float
+) -> tuple[ContactRequest, ContactSurface]:
+    """Return request and surface with one swept input at `value`, spreads left out."""
+    plain = ContactSurface(surface.dimension, surface.roughness)
+    conditions = replace(request.conditions, hardness_sd=0.0, friction_factor_sd=0.0)
+    bare = replace(request, conditions=conditions)
+    if name == "load":
+        return replace(bare, preloads=(Preload(value, 0.0),)), plain
+    if bare.preloads:
+        bare = replace(bare, preloads=(Preload(bare.preloads[0].value, 0.0),))
+    if name == "dimension":
+        return bare, replace(plain, dimension=value)
+    return bare, replace(plain, roughness=value)
 
 
 def _points(text: str) -> int:

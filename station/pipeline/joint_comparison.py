@@ -7,12 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.surfaces import Surface
 from jointbench.analysis.contact.contact_case import ContactCase, ContactConditions
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.signal.surface.structure_function import StructureFunction
+from jointbench.station.contact.measured_prediction import (
+    MeasuredJoint,
+    MeasuredPrediction,
+    measured_prediction,
+)
 from jointbench.station.pipeline.contact_prediction import (
     FACES,
     ContactPoint,
@@ -53,21 +59,14 @@ def predict_joint(
     Raises:
         BadData: no surface, more than two, or no scaling range on them.
     """
-    if not 1 <= len(structures) <= FACES:
-        raise BadData(
-            f"{len(structures)} surfaces for one joint; keep the two in contact "
-            "in the session, or one that stands for both"
-        )
+    _require_faces(structures)
     faces = structures if len(structures) == FACES else [structures[0]] * FACES
     surface = equivalent_surface(faces)
-    material = ContactMaterial(
-        effective_modulus=table.modulus, hardness=table.hardness, poisson=table.poisson
-    )
     case = ContactCase(
         contact_model(table.model),
         surface,
         Preload(table.preload, 0.0),
-        ContactConditions(material),
+        _conditions(table),
     )
     preloads = table.preload * np.logspace(-CURVE_DECADES, CURVE_DECADES, CURVE_POINTS)
     return ContactPrediction(
@@ -78,3 +77,39 @@ def predict_joint(
             for p in preloads
         ),
     )
+
+
+def predict_measured_joint(
+    surfaces: Sequence[Surface], table: ContactTable, area: float
+) -> MeasuredPrediction:
+    """Predict a joint by the laws of measured surfaces.
+
+    Args:
+        surfaces: of both sides, or one that stands for both.
+        table: material and preload.
+        area: apparent [m^2].
+
+    Raises:
+        BadData: no surface, more than two, or no wavelength that they show.
+    """
+    _require_faces(surfaces)
+    joint = MeasuredJoint(area, _conditions(table), (Preload(table.preload, 0.0),))
+    return measured_prediction(surfaces, joint, None)
+
+
+def _conditions(table: ContactTable) -> ContactConditions:
+    return ContactConditions(
+        ContactMaterial(
+            effective_modulus=table.modulus,
+            hardness=table.hardness,
+            poisson=table.poisson,
+        )
+    )
+
+
+def _require_faces(surfaces: Sequence[object]) -> None:
+    if not 1 <= len(surfaces) <= FACES:
+        raise BadData(
+            f"{len(surfaces)} surfaces for one joint; keep the two in contact "
+            "in the session, or one that stands for both"
+        )

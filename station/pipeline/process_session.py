@@ -18,8 +18,10 @@ from jointbench.analysis.gap.diagnosis.amplitude_evidence import MeasuredCurves
 from jointbench.analysis.lumped.identified import identification_json
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
+from jointbench.station.contact.measured_words import measured_json
 from jointbench.station.pipeline.chain import ModalChain, hits_stage, modal_chain
 from jointbench.station.pipeline.contact_prediction import contact_json
+from jointbench.station.pipeline.joint_comparison import predict_measured_joint
 from jointbench.station.pipeline.joint_stages import (
     Remarks,
     contact_stage,
@@ -34,10 +36,16 @@ from jointbench.station.pipeline.recipe_settings import (
     hit_criteria,
     stored_hits,
     surface_treatment_of,
+    texture_request_of,
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun, StageStore
-from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.pipeline.surface_options import SurfaceOptions
+from jointbench.station.pipeline.surface_stages import (
+    SurfaceChain,
+    chain_cautions,
+    with_texture,
+)
 from jointbench.station.schemas.bench_model import ContactTable
 from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.schemas.recipe import Recipe
@@ -194,7 +202,11 @@ def _surfaces(
     if not recipe.surface.use:
         return ()
     gamma = recipe.surface.gamma or DEFAULT_GAMMA
-    return surface_stages(session.surfaces, run, gamma, surface_treatment_of(recipe))
+    treatment = surface_treatment_of(recipe)
+    chains = surface_stages(session.surfaces, run, gamma, treatment)
+    asked = SurfaceOptions(treatment, texture=texture_request_of(recipe))
+    pairs = zip(chains, session.surfaces, strict=True)
+    return tuple(with_texture(chain, given, asked) for chain, given in pairs)
 
 
 def _contact(
@@ -218,13 +230,43 @@ def _contact(
         why = "no preload in the recipe or the session"
         remarks.lines.append(f"No contact prediction: {why}")
         return None
-    given = part.model_dump() | {"preload": preload}
+    given = part.model_dump(exclude={"area"}) | {"preload": preload}
     # Read as a table its numbers would need units again; they were checked there.
     table = ContactTable.model_construct(link="joint", **given)
     found = remarks.attempt(
         "contact prediction", lambda: contact_stage(surfaces, table, run)
     )
-    return None if found is None else contact_json([found.at], found.surface)
+    laws = None
+    if part.area is not None:
+        area = part.area
+        laws = remarks.attempt(
+            "laws of measured surfaces",
+            lambda: _measured(surfaces, table, area, run),
+        )
+    if found is None:
+        return None if laws is None else contact_json((), None, laws)
+    return contact_json([found.at], found.surface, laws)
+
+
+def _measured(
+    surfaces: Sequence[SurfaceChain], table: ContactTable, area: float, run: StageRun
+) -> Page:
+    """Predict the joint by the laws of measured surfaces, as ``contact`` does.
+
+    Args:
+        surfaces: of both sides, or one that stands for both.
+        table: material and preload.
+        area: apparent [m^2].
+        run: store and source.
+    """
+    heights = tuple(one.surface for one in surfaces)
+    given = [table.model_dump(mode="json", exclude={"link", "model"}), area]
+    return run.stages.run(
+        "measured_contact",
+        run.stages.key("measured_contact", given, run.stages.digest(heights)),
+        Page,
+        lambda: measured_json(predict_measured_joint(heights, table, area)),
+    )
 
 
 def _joint(

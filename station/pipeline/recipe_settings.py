@@ -10,9 +10,11 @@ from jointbench.signal.hits.windows import WindowRequest
 from jointbench.signal.kalman.process_models import KalmanModel, KalmanSettings
 from jointbench.signal.modal.manual_selection import Choices
 from jointbench.signal.modal.modes import ModalSettings
+from jointbench.signal.roughness.uncertain_parameters import instrument_errors
 from jointbench.signal.surface.surface_treatment import SurfaceTreatment
 from jointbench.station.pipeline.chain import ChainSettings
 from jointbench.station.pipeline.judge_again import StoredHits
+from jointbench.station.roughness.texture_request import TextureRequest
 from jointbench.station.schemas.recipe import Recipe
 from jointbench.station.schemas.recipe_modal_parts import HitsPart, KalmanPart
 
@@ -52,6 +54,21 @@ def surface_treatment_of(recipe: Recipe) -> SurfaceTreatment:
         direction=None if part.direction is None else math.radians(part.direction),
         short=part.lambda_s,
         long=part.lambda_c,
+    )
+
+
+def texture_request_of(recipe: Recipe) -> TextureRequest | None:
+    """Return what is asked of the standard parameters; None for none."""
+    part = recipe.surface
+    if not part.iso:
+        return None
+    return TextureRequest(
+        setting_class=part.setting_class,
+        short=part.lambda_s,
+        long=part.lambda_c,
+        form=part.form or 1,
+        robust=bool(part.robust),
+        errors=instrument_errors(part.scale_errors),
     )
 
 

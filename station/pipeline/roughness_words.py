@@ -54,8 +54,11 @@ def roughness_json(scaling: Scaling | None) -> dict[str, object]:
     }
 
 
-def contact_surface_json(surface: ContactSurface) -> dict[str, object]:
-    """Return the same of the surface that a contact model takes."""
+def contact_surface_json(surface: ContactSurface | None) -> dict[str, object]:
+    """Return the same of the surface that a contact model takes; null without one."""
+    if surface is None:
+        names = ("dimension", "pivot_m", "pivot_value_m2")
+        return roughness_json(None) | dict.fromkeys(names) | {"cautions": []}
     level = surface.level
     return {
         "dimension": surface.dimension,

@@ -10,19 +10,31 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.contact.predict import DAMPING_REASON
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.station.contact.measured_prediction import MeasuredPrediction
+from jointbench.station.contact.measured_section import measured_section
+from jointbench.station.contact.measured_words import COLUMNS as LAW_COLUMNS
+from jointbench.station.contact.measured_words import (
+    law_rows,
+    law_title,
+    measured_json,
+    surface_lines,
+    verdict_lines,
+)
+from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.joints.measured_faces import predict_faces
 from jointbench.station.pipeline.contact_options import ContactOptions
 from jointbench.station.pipeline.contact_prediction import (
     ContactPoint,
     contact_json,
     predict_request,
     surface_of,
-    swept,
 )
 from jointbench.station.pipeline.contact_request import (
     ContactRequest,
     Sweep,
     parse_sweep,
+    swept,
 )
 from jointbench.station.pipeline.roughness_words import contact_surface_words
 from jointbench.station.screen.figures import axis, figure
@@ -35,7 +47,7 @@ from jointbench.station.screen.page_parts import (
     Section,
     Text,
 )
-from jointbench.station.screen.terminal import console, table, write_json
+from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.traces import PALETTE, line
 
 LABELS = {
@@ -71,26 +83,59 @@ def run_contact(
     files = given.surface or []
     check_outputs(files, [given.json, given.plot])
     sweep = None if given.sweep is None else parse_sweep(given.sweep)
-    surface = surface_of(
-        given.dimension,
-        given.roughness,
-        files,
-        given.columns,
-        dimension_sd=given.dimension_sd,
-        roughness_sd=given.roughness_sd,
+    surface, measured = _surface(request, given)
+    if surface is None and sweep is not None:
+        raise BadData(
+            f"--sweep varies a fractal law, and {measured and measured.no_fractal}; "
+            "leave it out: --plot draws the laws of the spectrum over pressure"
+        )
+    points = () if surface is None else predict_request(request, surface)
+    rows = (
+        () if surface is None or sweep is None else run_sweep(request, surface, sweep)
     )
-    points = predict_request(request, surface)
-    rows = () if sweep is None else run_sweep(request, surface, sweep)
-    _show(points, surface, request, given.json)
+    if surface is not None:
+        _show(points, surface, request, given.json)
+    if measured is not None:
+        _show_measured(measured, given.json)
     if sweep is not None:
         _show_sweep(sweep, rows, given.json)
     if given.plot is not None:
-        write_report(contact_report(points, surface, sweep, rows), given.plot)
-    content = contact_json(points, surface)
+        swept_rows = None if sweep is None else (sweep, rows)
+        write_report(contact_report(points, surface, swept_rows, measured), given.plot)
+    laws = None if measured is None else measured_json(measured)
+    content = contact_json(points, surface, laws)
     if sweep is not None:
         content["sweep"] = sweep_json(sweep, rows)
     write_json(given.json, content)
     return points
+
+
+def _surface(
+    request: ContactRequest, given: ContactOptions
+) -> tuple[ContactSurface | None, MeasuredPrediction | None]:
+    """Return D and G as given or measured, and the laws of measured spectra."""
+    numbers = given.dimension is not None or given.roughness is not None
+    if given.surface and not numbers:
+        with working("fitting the surfaces"):
+            read = read_surfaces(given.surface, columns=given.columns)
+            found = predict_faces([surface for _, surface in read], request)
+        return found.surface, found.measured
+    surface = surface_of(
+        given.dimension,
+        given.roughness,
+        given.surface or [],
+        given.columns,
+        dimension_sd=given.dimension_sd,
+        roughness_sd=given.roughness_sd,
+    )
+    return surface, None
+
+
+def _show_measured(found: MeasuredPrediction, json_target: str | None) -> None:
+    screen = console(json_target)
+    screen.print(table(law_title(found), LAW_COLUMNS, law_rows(found)))
+    for said in (*surface_lines(found), *verdict_lines(found)):
+        screen.print(f"  {said}", markup=False)
 
 
 def run_sweep(
@@ -134,21 +179,26 @@ def sweep_json(sweep: Sweep, rows: Sequence[SweepRow]) -> dict[str, object]:
 
 def contact_report(
     points: Sequence[ContactPoint],
-    surface: ContactSurface,
-    sweep: Sweep | None,
-    rows: Sequence[SweepRow],
+    surface: ContactSurface | None,
+    swept: tuple[Sweep, Sequence[SweepRow]] | None,
+    measured: MeasuredPrediction | None = None,
 ) -> Report:
     """Arrange predictions and sweep as one offline report."""
-    cells = tuple(tuple(row) for row in _rows(points))
-    items: list[Item] = [DataTable("Predictions", COLUMNS, cells)]
-    items += [Text(said, "notice") for said in surface.cautions]
-    items += [Text(reason) for reason in _reasons(points)]
-    sections = [Section("points", "Predictions", tuple(items))]
-    if sweep is not None:
-        sections.append(Section("sweep", "Sweep", _plots(sweep, rows)))
+    sections = [] if measured is None else [measured_section(measured)]
+    if surface is not None:
+        cells = tuple(tuple(row) for row in _rows(points))
+        items: list[Item] = [DataTable("Predictions", COLUMNS, cells)]
+        items += [Text(said, "notice") for said in surface.cautions]
+        items += [Text(reason) for reason in _reasons(points)]
+        sections.append(Section("points", "Predictions", tuple(items)))
+    if swept is not None:
+        sections.append(Section("sweep", "Sweep", _plots(*swept)))
+    no_fractal = "" if measured is None else measured.no_fractal
     return Report(
         title="Contact of a rough joint",
-        lead=contact_surface_words(surface),
+        lead=f"No fractal law: {no_fractal}"
+        if surface is None
+        else contact_surface_words(surface),
         software=f"{software_version()}: contact",
         simulated=False,
         tiles=(),

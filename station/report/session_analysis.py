@@ -24,10 +24,15 @@ from jointbench.station.pipeline.joint_stages import (
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun
-from jointbench.station.pipeline.surface_stages import SurfaceChain
+from jointbench.station.pipeline.surface_options import SurfaceOptions
+from jointbench.station.pipeline.surface_stages import SurfaceChain, with_texture
 from jointbench.station.results.results_beside import StoredResults
+from jointbench.station.roughness.texture_request import TextureRequest
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.terminal import working
+
+_STANDARD = SurfaceOptions(texture=TextureRequest())
+"""A report shows the standard parameters with default settings."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,7 +109,9 @@ def analyse_session(
         )
         preloads = _modes(judged or (), settings, stored, run, remarks)
     with working("fitting surfaces"):
-        surfaces = surface_stages(session.surfaces, run)
+        plain = surface_stages(session.surfaces, run)
+        pairs = zip(plain, session.surfaces, strict=True)
+        surfaces = tuple(with_texture(one, given, _STANDARD) for one, given in pairs)
     with working("predicting and identifying the joint"):
         contact = _contact(surfaces, model, run, remarks)
         preloads = tuple(

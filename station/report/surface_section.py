@@ -1,86 +1,66 @@
 # SPDX-License-Identifier: MIT
-"""The report's section on surfaces: heights, structure function, verdict."""
+"""The report's section on surfaces: heights, spectra, structure function, verdict."""
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from jointbench.acquisition.records.surfaces import Areal, Profile
-from jointbench.signal.surface.levelling import level
-from jointbench.signal.surface.line_spectrum import line_spectrum
+from jointbench.acquisition.records.session import software_version
 from jointbench.station.pipeline.roughness_words import HEADING, roughness_words
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.roughness.texture_figures import texture_items
+from jointbench.station.screen.band_limited_words import COLUMNS as BAND_COLUMNS
+from jointbench.station.screen.band_limited_words import band_lines, band_rows
 from jointbench.station.screen.figures import axis, figure
-from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.plot_numbers import thin
-from jointbench.station.screen.traces import (
-    GREY,
-    PALETTE,
-    Trace,
-    heatmap,
-    line,
-    markers,
+from jointbench.station.screen.page_parts import (
+    DataTable,
+    Item,
+    Plot,
+    Report,
+    Section,
+    Text,
 )
+from jointbench.station.screen.surface_figures import height_plot, spectrum_plots
+from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
 from jointbench.station.screen.value_text import engineering, with_sd
 
-MOST_POINTS = 3000
-MOST_PIXELS = 260
-"""Pixels of a map along its longer side."""
 BAD = frozenset({"no scaling range", "instrument-limited"})
 
 
 def surface_section(chains: Sequence[SurfaceChain]) -> Section:
-    """Return the section: heights of each surface, then all structure functions."""
-    items: list[Item] = [_heights(chain, n) for n, chain in enumerate(chains)]
-    items += [_structure_plot(chains), _spectrum_plot(chains)]
-    items += [_slope_plot(chains), _table(chains)]
+    """Return the section: heights and spectrum of each surface, then all in one."""
+    items: list[Item] = []
+    for number, chain in enumerate(chains):
+        items += _shown(chain, number)
+    items += [_structure_plot(chains), _slope_plot(chains), _table(chains)]
+    items += [_band_table(chains), _instrument_table(chains)]
+    items += texture_items([(c.surface.name, c.texture) for c in chains])
     items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
     items += [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
+    items += [
+        Text(f"{c.surface.name}: {said}")
+        for c in chains
+        for said in band_lines(c.band, c.no_band or "none was asked for")
+    ]
     return Section("surfaces", "Surfaces", tuple(items))
 
 
-def _heights(chain: SurfaceChain, number: int) -> Plot:
-    surface = chain.surface
-    if isinstance(surface, Profile):
-        return _profile_plot(surface, number)
-    return _map_plot(surface, number)
+def surface_report(chains: Sequence[SurfaceChain]) -> Report:
+    """Return the report of surfaces without a session."""
+    names = ", ".join(chain.surface.name for chain in chains)
+    return Report(
+        title="Surfaces",
+        lead=names,
+        software=software_version(),
+        simulated=False,
+        tiles=(),
+        sections=(surface_section(chains),),
+    )
 
 
-def _profile_plot(profile: Profile, number: int) -> Plot:
-    position = np.arange(profile.heights.size) * profile.spacing * 1e3
-    heights = np.where(profile.valid, profile.heights * 1e6, np.nan)
-    kept = np.isfinite(heights)
-    trace = line(
-        *thin(position[kept], heights[kept], MOST_POINTS),
-        profile.name,
-        width=1,
-    )
-    caption = (
-        f"Profile {profile.name}: {profile.heights.size} heights every "
-        f"{engineering(profile.spacing, 'm')}, {np.sum(~profile.valid)} missing."
-    )
-    plot = figure([trace], axis("x [mm]"), axis("z [µm]"))
-    return Plot(f"heights-{number}", caption, plot, 280)
-
-
-def _map_plot(areal: Areal, number: int) -> Plot:
-    rows, columns = areal.heights.shape
-    coarse = max(1, -(-max(rows, columns) // MOST_PIXELS))
-    heights = np.where(areal.valid, areal.heights, np.nan)[::coarse, ::coarse] * 1e6
-    y, x = (
-        np.arange(n) * coarse * d * 1e6
-        for n, d in zip(heights.shape, areal.spacing, strict=True)
-    )
-    caption = (
-        f"Map {areal.name}: {rows} x {columns} heights every "
-        f"{engineering(areal.spacing[1], 'm')}, {np.sum(~areal.valid)} missing."
-    )
-    plot = figure(
-        [heatmap(x, y, heights - np.nanmean(heights), "z [µm]")],
-        axis("x [µm]", constrain="domain"),
-        axis("y [µm]", scaleanchor="x", constrain="domain"),
-    )
-    return Plot(f"heights-{number}", caption, plot, 300)
+def _shown(chain: SurfaceChain, number: int) -> list[Item]:
+    """Return heights, spectrum and residuals of one surface."""
+    lay = None if chain.band is None else chain.band.lay
+    heights = height_plot(chain.surface, lay, number)
+    return [heights, *spectrum_plots(chain.surface, chain.band, number)]
 
 
 def _structure_plot(chains: Sequence[SurfaceChain]) -> Plot:
@@ -116,27 +96,6 @@ def _structure_plot(chains: Sequence[SurfaceChain]) -> Plot:
         "instrument (line) and without the instrument (dotted)."
     )
     return Plot("structure-plot", caption, plot, 420)
-
-
-def _spectrum_plot(chains: Sequence[SurfaceChain]) -> Plot:
-    traces = []
-    for number, chain in enumerate(chains):
-        found = line_spectrum(level(chain.surface))
-        if found is not None:
-            color = PALETTE[number % len(PALETTE)]
-            density = 1e18 * found.density
-            name = chain.surface.name
-            traces.append(line(1e6 / found.frequency, density, name, color=color))
-    plot = figure(
-        traces,
-        axis("wavelength [µm]", log=True),
-        axis("power spectral density [µm³]", log=True),
-    )
-    caption = (
-        "Power spectral density along the lines, one-sided over 1 / wavelength: its "
-        "integral is the variance of the heights."
-    )
-    return Plot("spectrum-plot", caption, plot, 300)
 
 
 def _slope_plot(chains: Sequence[SurfaceChain]) -> Plot:
@@ -180,4 +139,43 @@ def _table(chains: Sequence[SurfaceChain]) -> DataTable:
         ("surface", "verdict", "D [-]", HEADING, "fit band", "instrument model"),
         tuple(rows),
         BAD,
+    )
+
+
+def _band_table(chains: Sequence[SurfaceChain]) -> DataTable:
+    rows = [row for c in chains for row in band_rows(c.surface.name, c.band)]
+    return DataTable(
+        "Band-limited surfaces: each number with its 95 % interval.",
+        BAND_COLUMNS,
+        tuple(rows),
+    )
+
+
+def _instrument_table(chains: Sequence[SurfaceChain]) -> DataTable:
+    """Return what the files state of the instruments."""
+
+    def said(length: float | None) -> str:
+        return "-" if length is None else engineering(length, "m")
+
+    rows = []
+    for chain in chains:
+        given = chain.surface.instrument
+        aperture = given.numerical_aperture
+        spacing = chain.surface.spacing
+        pitch = spacing if isinstance(spacing, float) else spacing[1]
+        rows.append(
+            (
+                chain.surface.name,
+                given.name or "-",
+                said(pitch),
+                said(given.stylus_radius),
+                "-" if aperture is None else f"{aperture:g}",
+                said(given.cutoff_short),
+                said(given.cutoff_long),
+            )
+        )
+    return DataTable(
+        "What the files state of the instruments.",
+        ("surface", "instrument", "pitch", "stylus", "NA [-]", "lambda_s", "lambda_c"),
+        tuple(rows),
     )

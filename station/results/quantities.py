@@ -16,6 +16,7 @@ from jointbench.acquisition.records.recordings import Verdict
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
 from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
 from jointbench.station.pipeline.surface_stages import SurfaceChain
+from jointbench.station.roughness.texture_words import parameter_names
 
 NAN = float("nan")
 # A 95 % interval of a normal quantity is this many standard deviations wide.
@@ -135,6 +136,7 @@ def amplitude_quantities(
 def _surface(chain: SurfaceChain) -> Iterator[ResultQuantity]:
     fit, name = chain.fit, chain.surface.name
     yield ResultQuantity("surface", name, "verdict", "", word=fit.verdict.value)
+    yield from _texture(chain)
     if fit.scaling is None:
         return
     dimension, sd = fit.scaling.dimension, fit.scaling.dimension_sd
@@ -144,6 +146,19 @@ def _surface(chain: SurfaceChain) -> Iterator[ResultQuantity]:
     ln_sd = float(high - low) / _WIDTH_95
     value = float(np.log(fit.scaling.roughness))
     yield ResultQuantity("surface", name, "ln_roughness_in_m", "1", value, ln_sd)
+
+
+def _texture(chain: SurfaceChain) -> Iterator[ResultQuantity]:
+    """Yield the standard parameters of a surface that has some."""
+    answer = chain.texture
+    if answer is None or answer.measured is None:
+        return
+    measured, item = answer.measured, chain.surface.name
+    for one in parameter_names(measured):
+        found = measured.named(one.name)
+        if found.value is not None:
+            sd = found.uncertainty or NAN
+            yield ResultQuantity("surface", item, one.name, one.unit, found.value, sd)
 
 
 def _contact(page: Mapping[str, Any]) -> Iterator[ResultQuantity]:

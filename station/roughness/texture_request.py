@@ -21,10 +21,10 @@ from jointbench.signal.roughness.uncertain_parameters import (
     NO_ERRORS,
     InstrumentErrors,
     MeasuredTexture,
+    instrument_errors,
 )
 
 _MOST_STEPS = len(SETTING_CLASSES)
-_LARGEST_ERROR = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,38 +61,6 @@ class TextureAnswer:
     measured: MeasuredTexture | None
     reason: str
     remarks: tuple[str, ...] = ()
-
-
-def instrument_errors(text: str | None) -> InstrumentErrors:
-    """Return the errors as typed: ``"1 %:0.5 %"``, of heights and of the pitch.
-
-    Raises:
-        UsageError: not two parts, or no small positive shares.
-    """
-    if text is None:
-        return NO_ERRORS
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) != 2 or not any(parts):
-        raise UsageError(
-            f"--scale-errors is {text!r}; give the standard uncertainty of the height "
-            "scale and of the pitch, for example '1 %:0.5 %', '1 %:' or ':0.5 %'"
-        )
-    height, pitch = (_share(part) if part else 0.0 for part in parts)
-    return InstrumentErrors(height, pitch)
-
-
-def _share(text: str) -> float:
-    plain = text.removesuffix("%")
-    try:
-        value = float(plain) / (100 if plain != text else 1)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value < _LARGEST_ERROR:
-        raise UsageError(
-            f"--scale-errors has {text!r}; a share is a number from 0 to "
-            f"{_LARGEST_ERROR:g}, or a percentage as '1 %'"
-        )
-    return value
 
 
 def requested_texture(

@@ -15,6 +15,7 @@ from pydantic import (
     AfterValidator,
     Field,
     SerializerFunctionWrapHandler,
+    field_validator,
     model_serializer,
     model_validator,
 )
@@ -30,6 +31,8 @@ from jointbench.analysis.gap.catalogue.installed_effects import (
     effect_code,
     installed_catalogue,
 )
+from jointbench.signal.roughness.setting_classes import setting_class
+from jointbench.signal.roughness.uncertain_parameters import instrument_errors
 from jointbench.signal.surface.form_removal import HIGHEST_DEGREE
 from jointbench.station.files.toml_file import (
     StrictTable,
@@ -63,7 +66,8 @@ _FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
 class SurfacePart(StrictTable):
     """Whether surfaces are fitted, with which frequency ratio and after which steps.
 
-    The steps are those of `SurfaceTreatment`; the direction holds for maps.
+    The steps are those of `SurfaceTreatment`; the direction holds for maps. With `iso`
+    the standard parameters are computed, with the same cut-offs and form.
     """
 
     use: bool = True
@@ -73,6 +77,23 @@ class SurfacePart(StrictTable):
     lambda_s: Length | None = None
     lambda_c: Length | None = None
     direction: Annotated[float, Field(ge=-180, le=180)] | None = None
+    iso: bool | None = None
+    setting_class: str | None = None
+    robust: bool | None = None
+    scale_errors: str | None = None
+
+    @field_validator("setting_class")
+    @classmethod
+    def _known_class(cls, name: str | None) -> str | None:
+        """Refuse a class that ISO 21920-3 has not."""
+        return None if name is None else setting_class(name).name
+
+    @field_validator("scale_errors")
+    @classmethod
+    def _known_errors(cls, text: str | None) -> str | None:
+        """Refuse errors that are no shares."""
+        instrument_errors(text)
+        return text
 
     @model_serializer(mode="wrap")
     def _only_steps_taken(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -83,13 +104,17 @@ class SurfacePart(StrictTable):
 
 
 class ContactPart(StrictTable):
-    """Input of the contact law for the prediction of the joint from its surfaces."""
+    """Input of the contact laws for the prediction of the joint from its surfaces.
+
+    The apparent area [m^2] asks for the laws of measured surfaces as well.
+    """
 
     modulus: Pressure
     hardness: Pressure
     preload: Force | None = None
     poisson: Annotated[float, Field(ge=0, lt=0.5)] = 0.25
     model: str = "ke_3d_modified"
+    area: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
 
 
 class IdentificationPart(StrictTable):

@@ -1,35 +1,65 @@
 # SPDX-License-Identifier: MIT
 """The band-limited surface in words and as plain data."""
 
+import numpy as np
+
 from jointbench.signal.band_limited.band_records import (
     BandLimitedFit,
     Interval95,
     RollOffVerdict,
     RoughnessMoments,
+    SurfaceLay,
 )
 from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.station.screen.value_text import engineering
 
-COLUMNS = ("surface", "H [-]", "roll-off", "rms height", "rms slope", "rms curvature")
+COLUMNS = ("surface", "quantity", "value", "95 %")
+TEXT_COLUMNS = frozenset({0, 1})
+"""Columns of the table that are text."""
 _FAR = 3.0
 """Distance of a short cut from that of the stated stylus that is reported [sd]."""
 TITLE = "Band-limited surfaces (95 % intervals)"
 
 
-def band_row(name: str, fit: BandLimitedFit | None) -> tuple[str, ...]:
-    """Return the row of a surface in the table of band-limited surfaces."""
+def band_rows(name: str, fit: BandLimitedFit | None) -> list[tuple[str, ...]]:
+    """Return the rows of a surface in the table of band-limited surfaces."""
     if fit is None:
-        return (name, *["-"] * 5)
-    moments = fit.moments
-    numbers = ["-"] * 3
-    if moments is not None:
-        numbers = [
-            _metres(moments.height),
-            _plain(moments.slope),
-            f"{_plain(moments.curvature.times(1e-6))} /µm",
-        ]
-    hurst = "-" if fit.hurst is None else _plain(fit.hurst)
-    return (name, hurst, _roll_off_words(fit), *numbers)
+        return [(name, "-", "-", "-")]
+    rows = _shape_rows(fit)
+    if fit.moments is not None:
+        moments = fit.moments
+        rows.append(("rms height", *_metres(moments.height)))
+        rows.append(("rms slope [-]", *_plain(moments.slope)))
+        curvature = moments.curvature.times(1e-6)
+        rows.append(("rms curvature [1/µm]", *_plain(curvature)))
+    return [(name if k == 0 else "", *row) for k, row in enumerate(rows)]
+
+
+def _shape_rows(fit: BandLimitedFit) -> list[tuple[str, str, str]]:
+    """Return H and roll-off, or those along a lay and across it."""
+    lay = fit.lay
+    if lay is None:
+        rows = [] if fit.hurst is None else [("H [-]", *_plain(fit.hurst))]
+        return [*rows, *_roll_off_rows(fit)]
+    rows = [
+        ("direction of the lay [deg]", *_degrees(lay.angle)),
+        ("wavelength along / across [-]", *_plain(lay.ratio)),
+        ("H along the lay [-]", *_plain(lay.hurst_along)),
+        ("H across the lay [-]", *_plain(lay.hurst_across)),
+    ]
+    if lay.roll_off_along is None or lay.roll_off_across is None:
+        return [*rows, *_roll_off_rows(fit)]
+    rows.append(("roll-off along the lay", *_metres(lay.roll_off_along)))
+    rows.append(("roll-off across the lay", *_metres(lay.roll_off_across)))
+    return rows
+
+
+def _roll_off_rows(fit: BandLimitedFit) -> list[tuple[str, str, str]]:
+    if fit.roll_off is not None:
+        return [("roll-off", *_metres(fit.roll_off))]
+    if fit.roll_off_beyond is not None:
+        return [("roll-off", "-", f"beyond {engineering(fit.roll_off_beyond, 'm')}")]
+    return []
 
 
 def band_lines(fit: BandLimitedFit | None, reason: str | None) -> tuple[str, ...]:
@@ -37,6 +67,8 @@ def band_lines(fit: BandLimitedFit | None, reason: str | None) -> tuple[str, ...
     if fit is None:
         return (f"no band-limited fit: {reason}",)
     said = [f"longest waves: {fit.verdict.value}; {fit.reason}"]
+    if fit.lay is not None:
+        said.append(lay_words(fit.lay))
     if fit.moments is None:
         said.append("no wavelength shows the surface: filters and noise hide it")
     else:
@@ -47,10 +79,20 @@ def band_lines(fit: BandLimitedFit | None, reason: str | None) -> tuple[str, ...
         said.append(_tip_words(fit.tip_deviation))
     elif fit.short_cut is not None and fit.short_cut.low > 0:
         said.append(
-            f"waves are cut by half at {_metres(fit.short_cut)}, beyond what is stated "
-            "of the instrument: by the surface or by a blur that is not stated"
+            f"waves are cut by half at {_with_ends(fit.short_cut)}, beyond what is "
+            "stated of the instrument: by the surface or by a blur that is not stated"
         )
     return tuple(said)
+
+
+def lay_words(lay: SurfaceLay) -> str:
+    """Return the direction of a lay and how much longer waves are along it."""
+    angle, _ = _degrees(lay.angle)
+    ratio, ends = _plain(lay.ratio)
+    return (
+        f"lay at {angle} degrees from the rows: waves along it are {ratio} times "
+        f"({ends}) as long as across it"
+    )
 
 
 def _tip_words(deviation: float) -> str:
@@ -78,6 +120,8 @@ def band_json(fit: BandLimitedFit | None, reason: str | None) -> dict[str, objec
         "tip_deviation": fit.tip_deviation,
         "noise_m": fit.noise,
         "tolerance": fit.tolerance,
+        "fitted": "map" if fit.mapped else "lines",
+        "lay": None if fit.lay is None else _lay(fit.lay),
         "moments": None if fit.moments is None else _moments(fit.moments),
     }
 
@@ -104,29 +148,42 @@ def qualified(fit: FractalFit, band: BandLimitedFit | None) -> tuple[str, str]:
     return verdict.value, reason
 
 
-def _roll_off_words(fit: BandLimitedFit) -> str:
-    if fit.roll_off is not None:
-        return _metres(fit.roll_off)
-    if fit.roll_off_beyond is not None:
-        return f"beyond {engineering(fit.roll_off_beyond, 'm')}"
-    return "-"
-
-
-def _metres(part: Interval95) -> str:
+def _metres(part: Interval95) -> tuple[str, str]:
     value, low, high = (
         engineering(one, "m") for one in (part.value, part.low, part.high)
     )
-    return f"{value} ({low} to {high})"
+    return value, f"{low} to {high}"
 
 
-def _plain(part: Interval95) -> str:
-    return f"{part.value:.3g} ({part.low:.3g} to {part.high:.3g})"
+def _plain(part: Interval95) -> tuple[str, str]:
+    return f"{part.value:.3g}", f"{part.low:.3g} to {part.high:.3g}"
+
+
+def _with_ends(part: Interval95) -> str:
+    value, ends = _metres(part)
+    return f"{value} ({ends})"
+
+
+def _degrees(part: Interval95) -> tuple[str, str]:
+    value, low, high = (np.degrees(one) for one in (part.value, part.low, part.high))
+    return f"{value:.1f}", f"{low:.1f} to {high:.1f}"
 
 
 def _ends(part: Interval95 | None) -> dict[str, float] | None:
     if part is None:
         return None
     return {"value": part.value, "low": part.low, "high": part.high}
+
+
+def _lay(lay: SurfaceLay) -> dict[str, object]:
+    return {
+        "angle_deg": _ends(lay.angle.times(180 / np.pi)),
+        "ratio": _ends(lay.ratio),
+        "hurst_along": _ends(lay.hurst_along),
+        "hurst_across": _ends(lay.hurst_across),
+        "roll_off_along_m": _ends(lay.roll_off_along),
+        "roll_off_across_m": _ends(lay.roll_off_across),
+    }
 
 
 def _moments(moments: RoughnessMoments) -> dict[str, object]:

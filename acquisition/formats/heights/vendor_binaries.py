@@ -67,7 +67,7 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
         raise HostileFile(f"{named(path)} is larger than {MOST_BYTES} bytes; cut it")
     _require_few_lines(path)
     _require_sane_container(path)
-    topography, reader = _open(path)
+    topography, reader = open_vendor(path)
     unit = topography.unit
     if unit is None:
         raise UnitError(
@@ -129,8 +129,13 @@ def _require_sane_container(path: Path) -> None:
         raise HostileFile(f"{named(path)} holds {len(entries)} files; export it again")
 
 
-def _open(path: Path) -> tuple[Any, str]:
-    """Return the default channel of a file and the name of its format."""
+def open_vendor(path: Path) -> tuple[Any, str]:
+    """Return the default channel of a file and the name of its format.
+
+    Raises:
+        FormatError: the extra is not installed, or no reader knows the file.
+        HostileFile: it declares more points than any map.
+    """
     try:
         import SurfaceTopography.IO
     except ImportError as error:

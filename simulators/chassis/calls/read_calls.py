@@ -23,7 +23,7 @@ from jointbench.simulators.chassis.protocol import (
 )
 from jointbench.simulators.chassis.tasks.acquisition import Patience
 from jointbench.simulators.chassis.tasks.task import (
-    MOST_BYTES,
+    MOST_READ,
     SimulatedTask,
     no_memory,
 )
@@ -175,7 +175,7 @@ class ReadCalls(Calls):
             made, wanted = task.acquisition, task.read_channels()
             assert made is not None
             count = _count(task, count)
-            if count * len(task.channels) * _BYTES > MOST_BYTES:
+            if count * len(task.channels) * _BYTES > MOST_READ:
                 raise no_memory()
             self.faults.before_read(task, count)
             waiting = Patience(timeout=timeout, alive=context.is_active)

@@ -21,14 +21,16 @@ from jointbench.simulators.chassis.tasks.signals import Signals, digitised
 from jointbench.simulators.chassis.tasks.trigger_plan import trigger_plan
 from jointbench.simulators.chassis.tasks.verification import (
     coerced_rate,
+    require_clock,
     terminal,
     verify_channels,
     verify_samples,
 )
 from jointbench.simulators.chassis.tasks.virtual_channels import VirtualChannel
 
-# Most bytes of the values of one block or read: above it a computer has no memory.
-MOST_BYTES = 2**32
+# Most bytes of a buffer, which is never allocated here, and of a read, which is.
+_MOST_BUFFERED = 2**32
+MOST_READ = 2**28
 _BYTES = 8
 _FINITE = int(constants.AcquisitionType.FINITE.value)
 _ON_DEMAND = int(constants.SampleTimingType.ON_DEMAND.value)
@@ -175,6 +177,8 @@ class SimulatedTask:
             source = self.timing.text("SAMP_CLK_SRC")
             if source and source != "OnboardClock":
                 self.terminal(source)
+        else:
+            require_clock(self.channels)
         self._verify_buffer()
         plan = trigger_plan(
             self.triggers,
@@ -228,7 +232,7 @@ class SimulatedTask:
 
     def _require_memory(self, course: Course) -> None:
         samples = max(course.buffer, course.finite or 0)
-        if samples * len(self.channels) * _BYTES > MOST_BYTES:
+        if samples * len(self.channels) * _BYTES > _MOST_BUFFERED:
             raise no_memory()
 
     def start(self) -> None:

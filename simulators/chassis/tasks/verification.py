@@ -120,6 +120,24 @@ def _verify_distinct(channels: Sequence[VirtualChannel]) -> None:
         seen.add(channel.input.number)
 
 
+def require_clock(channels: Sequence[VirtualChannel]) -> None:
+    """Refuse a task without a sample clock on a delta-sigma converter.
+
+    Raises:
+        Refusal: a device of the task needs the rate.
+
+    Source:
+        nidaqwrapper, issues 5 and 6: what a task without timing gives on such devices.
+    """
+    if any(module.rates.rule != "timebase" for module in _modules(channels)):
+        raise Refusal(
+            DAQmxErrors.SAMP_CLK_RATE_MUST_BE_SPECD,
+            "Task contains physical channels on one or more devices that require you "
+            "to specify the Sample Clock rate. Use the Sample Clock Timing function/VI "
+            "to specify a Sample Clock rate.",
+        )
+
+
 def coerced_rate(channels: Sequence[VirtualChannel], asked: float) -> float:
     """Return the rate that the modules of a task take for a request [Hz].
 

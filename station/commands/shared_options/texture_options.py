@@ -33,7 +33,7 @@ ScaleErrors = Annotated[
     typer.Option(
         "--scale-errors",
         metavar="HEIGHT:PITCH",
-        help="With --iso: standard uncertainties of the height scale and of the pitch, "
+        help="With --iso: standard uncertainties of height scale and pitch [%], "
         "for example '1 %:0.5 %'.",
     ),
 ]

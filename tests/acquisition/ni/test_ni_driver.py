@@ -312,3 +312,39 @@ def test_an_expired_calibration_warns_from_the_day_after(
 ) -> None:
     """Calibrated on 2 March 2026 for twelve months."""
     assert (calibration_warning(HAMMER, today) is not None) is warns
+
+
+def test_a_task_left_by_a_lost_connection_is_closed_before_the_next() -> None:
+    """A server that stays up keeps the task, and with it the module (-50103)."""
+    with chassis() as client:
+        client.task("first", SENSORS).start(12_800.0, buffer=20_000)
+        other = client.task("second", SENSORS)
+        with pytest.raises(InstrumentError, match=r"-50103[\s\S]*holds the module"):
+            other.start(12_800.0, buffer=20_000)
+        client._left.append("first")  # noqa: SLF001
+        task = client.task("third", SENSORS)
+        assert task.start(12_800.0, buffer=20_000) == 12_800.0
+        task.close()
+
+
+def test_a_task_that_cannot_be_closed_is_noted() -> None:
+    """The server is away when the task is to be closed."""
+    with SimulatedChassis(ChassisSetup(speed=math.inf)) as server:
+        client = Chassis(server.address)
+        task = client.task("first", SENSORS)
+        server.drop(60.0)
+        task.close()
+        assert client._left == ["first"]  # noqa: SLF001
+        client.close()
+
+
+def test_a_task_of_a_killed_program_is_replaced() -> None:
+    """It has the same name, is running, and its program will not stop it."""
+    with SimulatedChassis(ChassisSetup(speed=math.inf)) as server:
+        killed, client = Chassis(server.address), Chassis(server.address)
+        killed.task("jointbench-0", SENSORS).start(12_800.0, buffer=20_000)
+        killed.close()
+        made = stream(client)
+        assert made.sample_rate == 12_800.0
+        made.close()
+        client.close()

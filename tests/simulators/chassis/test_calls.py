@@ -48,8 +48,7 @@ def test_a_list_of_inputs_makes_a_channel_of_each(
     new_task: NewTask, text: str, inputs: list[int]
 ) -> None:
     """A range up, a range down, a list, and a leading slash."""
-    task = new_task()
-    task.ai_channels.add_ai_voltage_chan(text, **RANGE)
+    task = block(new_task(), text)
     assert task.channel_names == [f"cDAQSim1Mod4/ai{n}" for n in inputs]
     assert len(task.read(4)) == (4 if len(inputs) == 1 else len(inputs))
 

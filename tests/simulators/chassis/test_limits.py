@@ -34,7 +34,7 @@ def task_on(channel: grpc.Channel, where: str, name: str = "") -> nidaqmx.Task:
     return task
 
 
-def serve_an_honest_client(server: SimulatedChassis) -> float:
+def serve_another_client(server: SimulatedChassis) -> float:
     """Return how long a client needs to read ten samples [s]."""
     since = time.monotonic()
     own = (("grpc.use_local_subchannel_pool", 1),)
@@ -69,7 +69,7 @@ def test_waiting_calls_tasks_and_garbage_leave_room_for_another_client(
             for n in range(30):
                 task._interpreter.create_task(f"t{n}")  # noqa: SLF001
         assert refused.value.error_code == DAQmxErrors.PAL_MEMORY_FULL
-        assert serve_an_honest_client(server) < 1.0
+        assert serve_another_client(server) < 1.0
         refusals = [call for call in calls if call.done()]
         assert len(refusals) >= 9
         assert all(

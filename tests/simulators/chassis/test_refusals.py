@@ -22,6 +22,7 @@ from nidaqmx.error_codes import DAQmxErrors
 from nidaqmx.grpc_session_options import SessionInitializationBehavior
 
 MODULE = "cDAQSim1Mod1"  # NI 9234
+BOARD = "Dev2/ai0"  # PCIe-6363
 VOLTAGE_ONLY = "cDAQSim1Mod3"  # NI 9215
 FINITE, CONTINUOUS = AcquisitionType.FINITE, AcquisitionType.CONTINUOUS
 NewTask = Callable[..., nidaqmx.Task]
@@ -208,9 +209,15 @@ def read_without_start(task: nidaqmx.Task) -> None:
     task.read(1)
 
 
+def no_clock(task: nidaqmx.Task) -> None:
+    """A delta-sigma converter needs a rate."""
+    volt(task)
+    task.control(TaskMode.TASK_VERIFY)
+
+
 def trigger_without_clock(task: nidaqmx.Task) -> None:
     """On demand there is nothing to trigger."""
-    volt(task)
+    volt(task, BOARD)
     task.triggers.start_trigger.trig_type = TriggerType.ANALOG_EDGE
     task.control(TaskMode.TASK_VERIFY)
 
@@ -258,7 +265,7 @@ def no_such_line(task: nidaqmx.Task) -> None:
 
 
 def no_such_clock(task: nidaqmx.Task) -> None:
-    """A clock that does not exist; the first property read says it."""
+    """A clock that does not exist; the first property read shows it."""
     volt(task)
     task.timing.cfg_samp_clk_timing(1000.0, source="Nowhere")
     _ = task.timing.samp_clk_src
@@ -279,7 +286,7 @@ def overload_of_other_hardware(task: nidaqmx.Task) -> None:
 def property_of_one_device(task: nidaqmx.Task) -> None:
     """The rate is that of the whole task."""
     volt(task)
-    _ = task.timing[f"{MODULE}"].samp_clk_rate
+    _ = task.timing[MODULE].samp_clk_rate
 
 
 def relative_to_no_trigger(task: nidaqmx.Task) -> None:
@@ -297,7 +304,7 @@ def no_such_channel_to_read(task: nidaqmx.Task) -> None:
 
 def buffer_on_demand(task: nidaqmx.Task) -> None:
     """Without a clock there is no buffer."""
-    volt(task)
+    volt(task, BOARD)
     task.in_stream.input_buf_size = 1000
     task.start()
 
@@ -353,6 +360,7 @@ REFUSED: tuple[tuple[Callable[[nidaqmx.Task], None], DAQmxErrors], ...] = (
         read_without_start,
         E.CANNOT_READ_WHEN_AUTO_START_FALSE_AND_TASK_NOT_RUNNING_OR_COMMITTED,
     ),
+    (no_clock, E.SAMP_CLK_RATE_MUST_BE_SPECD),  # seen
     (trigger_without_clock, E.TRIG_WHEN_ON_DEMAND_SAMP_TIMING),  # seen
     (reference_of_continuous, E.REF_TRIG_WHEN_CONTINUOUS),
     (pretrigger_too_long, E.TOO_MANY_PRETRIG_PLUS_MIN_POST_TRIG_SAMPS),
@@ -459,7 +467,7 @@ def test_an_event_is_registered_once(new_task: NewTask) -> None:
 def test_a_task_on_demand_has_no_clock(new_task: NewTask) -> None:
     """Its timing type shows it, and it is always done."""
     task = new_task()
-    volt(task)
+    volt(task, BOARD)
     assert task.timing.samp_timing_type == SampleTimingType.ON_DEMAND
     task.start()
     task.wait_until_done()

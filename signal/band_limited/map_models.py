@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Models of a map that are compared: with and without lay, roll-off, blur and noise."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.band_limited.lay_spectrum import seen_bins
+from jointbench.signal.band_limited.map_likelihood import (
+    MapLikelihood,
+    MapMaximum,
+    maximise_map,
+)
+from jointbench.signal.band_limited.map_parameters import (
+    ANGLE,
+    BLUR,
+    HURST,
+    LEVEL,
+    NOISE,
+    RATIO,
+    ROLL_OFF,
+    SKEW,
+)
+
+LAY_RATIO = 16.3
+"""Twice the gain in log-likelihood by a lay above which it is named: a level of 0.1 %
+for three parameters [-]."""
+_START_ROLL_OFFS = (0.03, 0.3)
+"""Roll-offs over the length from which the search starts [-]."""
+_SMALL = {BLUR: 0.3, NOISE: 0.1}
+"""Blur [samples^2] and noise [-] from which the search starts."""
+_TURNS = 4
+"""Angles from which the search for a lay starts, besides the one by moments [-]."""
+_CLEAR_START = 1.15
+"""Ratio by moments above which its angle is a start of its own [-]."""
+_CLEAR_ROLL_OFF = 20.0
+"""Gain in log-likelihood by a roll-off that no blur or noise undoes [-]."""
+_CLOSE = 8.0
+"""Distance of Akaike's criterion within which a model has weight [-]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapModels:
+    """Maxima with a roll-off and without one, each with several blurs and noises.
+
+    Attributes:
+        likelihood: of the map.
+        rolling: with a roll-off, the best first.
+        endless: without one, the best first.
+        lay: whether they have a lay.
+        lay_gain: twice the gain in log-likelihood by it [-].
+    """
+
+    likelihood: MapLikelihood
+    rolling: tuple[MapMaximum, ...]
+    endless: tuple[MapMaximum, ...]
+    lay: bool
+    lay_gain: float
+
+    @property
+    def best(self) -> MapMaximum:
+        """The best one with a roll-off."""
+        return self.rolling[0]
+
+    @property
+    def density(self) -> FloatArray:
+        """Spectrum of the best one with a roll-off in each bin."""
+        return self.likelihood.density(self.best.parameters)
+
+    @property
+    def ratio(self) -> float:
+        """Twice the gain in log-likelihood by a roll-off [-]."""
+        gain = self.best.criterion + 1 - self.endless[0].criterion
+        return max(0.0, 2 * gain)
+
+
+def map_models(likelihood: MapLikelihood) -> MapModels:
+    """Return the maxima of all models that the heights support."""
+    free = np.zeros(8, dtype=np.bool_)
+    free[[LEVEL, HURST, ROLL_OFF]] = True
+    tip = likelihood.bins.sample.transfer.tip is not None
+    free[BLUR] = tip
+    # Few bins suffice to find the surface without a lay.
+    few = replace(likelihood, bins=seen_bins(likelihood.bins.sample.merged()))
+    starts = [_start(few, share, tip=tip) for share in _START_ROLL_OFFS]
+    tried = [maximise_map(few, one, free) for one in starts]
+    plain = _sorted(_with_instrument(few, max(tried, key=_criterion), starts))
+    plain = _sorted([_refitted(likelihood, one) for one in plain])
+    turned = _with_lay(likelihood, plain[0])
+    gain = 2 * (turned.value - plain[0].value)
+    if gain <= LAY_RATIO:
+        return MapModels(likelihood, plain, _endless(likelihood, plain), False, gain)
+    others = [one for one in plain[1:] if one.criterion > plain[0].criterion - _CLOSE]
+    found = _sorted([turned, *(_turned_too(likelihood, m, turned) for m in others)])
+    return MapModels(likelihood, found, _endless(likelihood, found), True, gain)
+
+
+def _turned_too(
+    likelihood: MapLikelihood, plain: MapMaximum, turned: MapMaximum
+) -> MapMaximum:
+    """Return the lay of one model fitted with the blur and noise of another."""
+    free = plain.free.copy()
+    start = plain.parameters.copy()
+    for k in (RATIO, ANGLE, SKEW):
+        free[k], start[k] = True, turned.parameters[k]
+    return maximise_map(likelihood, start, free)
+
+
+def again(models: MapModels, tolerance: float) -> MapModels:
+    """Return the maxima under another tolerance, each from the one before."""
+    likelihood = replace(models.likelihood, tolerance=tolerance)
+    rolling = [_refitted(likelihood, one) for one in models.rolling]
+    endless = [_refitted(likelihood, one) for one in models.endless]
+    return replace(
+        models,
+        likelihood=likelihood,
+        rolling=_sorted(rolling),
+        endless=_sorted(endless),
+    )
+
+
+def _refitted(likelihood: MapLikelihood, one: MapMaximum) -> MapMaximum:
+    return maximise_map(likelihood, one.parameters, one.free)
+
+
+def _criterion(one: MapMaximum) -> float:
+    return one.criterion
+
+
+def _sorted(found: list[MapMaximum]) -> tuple[MapMaximum, ...]:
+    """Return the models that have weight, the best first."""
+    ranked = sorted(found, key=_criterion, reverse=True)
+    return tuple(m for m in ranked if ranked[0].criterion - m.criterion < _CLOSE)
+
+
+def _start(likelihood: MapLikelihood, share: float, *, tip: bool) -> FloatArray:
+    """Return parameters of a surface with a roll-off at a share of the length."""
+    sample = likelihood.bins.sample
+    at = np.zeros(8)
+    at[HURST] = 0.6
+    at[ROLL_OFF] = np.log(share * sample.length)
+    at[BLUR] = _SMALL[BLUR] * tip
+    # The level follows from the others.
+    power, density = sample.power, likelihood.density(at)
+    at[LEVEL] = np.log(np.average(power / density, weights=sample.count))
+    return at
+
+
+def _with_instrument(
+    likelihood: MapLikelihood, plain: MapMaximum, starts: list[FloatArray]
+) -> list[MapMaximum]:
+    """Return a model, and the same with blur, noise and both where they are there.
+
+    Both together start from each start as well: without them the best H of a blurred
+    surface may be at the end of its range.
+    """
+    found = [plain]
+    open_ = [k for k in (BLUR, NOISE) if not plain.free[k]]
+    for kind in (open_, *([k] for k in open_ if len(open_) > 1)):
+        free = plain.free.copy()
+        free[kind] = True
+        best = max(found, key=_criterion).parameters
+        tried = []
+        for at in [best, *starts] if kind is open_ else [best]:
+            start = at.copy()
+            for k in (BLUR, NOISE):
+                start[k] = max(float(start[k]), _SMALL[k]) if free[k] else 0.0
+            tried.append(maximise_map(likelihood, start, free))
+        one = max(tried, key=lambda m: m.value)
+        # A blur or noise of nothing is the model without it.
+        if np.all(one.parameters[kind] > 0):
+            found.append(one)
+    return found
+
+
+def _with_lay(likelihood: MapLikelihood, plain: MapMaximum) -> MapMaximum:
+    """Return the best fit with a lay, from several directions."""
+    free = plain.free.copy()
+    free[[RATIO, ANGLE]] = True
+    best = plain
+    for angle, wide in _lays(likelihood, plain):
+        start = plain.parameters.copy()
+        start[[RATIO, ANGLE]] = wide, angle
+        best = max(best, maximise_map(likelihood, start, free), key=lambda m: m.value)
+    free[SKEW] = True
+    return maximise_map(likelihood, best.parameters, free)
+
+
+def _lays(likelihood: MapLikelihood, plain: MapMaximum) -> list[tuple[float, float]]:
+    """Return starts of angle and ln ratio, by the second moments of ln density."""
+    sample = likelihood.bins.sample
+    count, power = likelihood.counts, sample.power
+    share = power / likelihood.density(plain.parameters)
+    turn = 2 * np.arctan2(sample.down, sample.along)
+    rates = np.array([np.ones_like(turn), np.cos(turn), np.sin(turn)])
+    steepness = 1 + float(plain.parameters[HURST])
+    found = np.zeros(3)
+    for _ in range(6):
+        rest = share * np.exp(-found @ rates) - 1
+        found += np.linalg.solve((rates * count) @ rates.T, rates @ (count * rest))
+    # More power across the lay: ln density falls by the steepness times ln ratio.
+    wide = float(np.hypot(found[1], found[2])) / steepness
+    angle = 0.5 * float(np.arctan2(found[2], found[1])) + np.pi / 2
+    first = (angle, min(wide, 3.0))
+    if np.exp(wide) > _CLEAR_START:
+        return [first]
+    return [first, *((k * np.pi / _TURNS, 0.3) for k in range(_TURNS))]
+
+
+def _endless(
+    likelihood: MapLikelihood, rolling: tuple[MapMaximum, ...]
+) -> tuple[MapMaximum, ...]:
+    """Return the same models without a roll-off; the best alone where it is clear."""
+    found: list[MapMaximum] = []
+    for one in rolling:
+        start, free = one.parameters.copy(), one.free.copy()
+        start[ROLL_OFF], free[ROLL_OFF] = likelihood.bounds[1][ROLL_OFF], False
+        found.append(maximise_map(likelihood, start, free))
+        if rolling[0].value - found[0].value > _CLEAR_ROLL_OFF:
+            break
+    return _sorted(found)
