@@ -220,13 +220,13 @@ def wave_compliance() -> tuple[Array, Array]:
 
     The compliance is that of the mean gap, times E*/wavelength: -d(gap)/dp E*/lambda.
     """
-    n = 256
+    n = 512
     x = np.arange(n) / n
     wave = 0.5 * (1.0 - np.cos(2.0 * np.pi * x))  # gap of wavelength 1, depth 1
     k = 2.0 * np.pi * np.abs(np.fft.fftfreq(n, 1.0 / n))
     green = np.divide(2.0, k, out=np.zeros(n), where=k > 0)  # E* = 1
     closing = 0.5 * np.pi
-    share = np.linspace(0.02, 1.2, 40)
+    share = np.geomspace(0.01, 1.2, 60)
     gaps = []
     pressure = np.full(n, share[0] * closing)
     for one in share:

@@ -20,7 +20,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
 from jointbench.analysis.gap.contact_bench.preload_effects import preload_effects
 from jointbench.analysis.gap.contact_bench.series_effects import lever, series_effects
 from jointbench.analysis.gap.model.effect import Effect
-from jointbench.analysis.gap.model.effect_parameter import Parameter
+from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
 
 CONTACT_NAMES = (
     "series_compliance",
@@ -135,6 +135,7 @@ def _laws(data: JointData) -> list[ContactEffect]:
                     (Parameter("change", "-", lower=0.0, upper=0.95, off=0.0),),
                     source="unloading of flattened summits: Etsion, Kligerman and "
                     "Kadin 2005, Int. J. Solids Struct. 42, 3716",
+                    model_error=CONTACT.flattening_error,
                     separates={
                         "falling_torque": "bolt force washer",
                         "relaxation": "wait at constant torque and repeat",
@@ -161,7 +162,7 @@ def _slipping(values: FloatArray, joint: LoadedJoint) -> FloatArray:
     force = np.where(np.isnan(shear), 1.0, shear) * values[0]
     ratio = np.minimum(force / joint.preload, CONTACT.most_ratio)
     found = joint.table.copy()
-    found[1:3] = found[1:3] * np.cbrt(1.0 - ratio)
+    found[1:3] = found[1:3] * (1.0 - ratio) ** values[1]
     return found
 
 
@@ -200,14 +201,25 @@ def _parallels(data: JointData) -> list[ContactEffect]:
             if stated
             else Parameter("force", "N", "slip", 0.0, 0.98, off=0.0, far=(0.7,))
         )
+        exponent = Parameter(
+            "exponent",
+            "-",
+            lower=0.2,
+            upper=1.5,
+            starts=(0.4, 0.9),
+            transform=Transform.LOG,
+        )
         found.append(
             ContactEffect(
                 Effect(
                     "partial_slip",
                     "friction",
-                    (first,),
-                    source="k_t (1 - Q/(mu P))^(1/3): Mindlin 1949, J. Appl. Mech. 16, "
-                    "259; without a stated force, Q/mu is found",
+                    (first, exponent),
+                    source="k_t (1 - Q/(mu P))^m: m = 1/3 for one contact, Mindlin "
+                    "1949, J. Appl. Mech. 16, 259; near 1 for many of random height, "
+                    "Bjorklund 1997, J. Tribol. 119, 726; without a stated force, "
+                    "Q/mu is found",
+                    model_error=CONTACT.slip_error,
                     separates={"film": "level series: slip falls with the level"},
                 ),
                 EffectPlace.STIFFNESS,

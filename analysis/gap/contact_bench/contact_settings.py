@@ -59,6 +59,20 @@ class ContactBenchSettings:
         "formula of an effect is not the physics of a joint",
         _SWEPT,
     )
+    slip_error: float = decision(
+        0.02,
+        "of the excess",
+        "the same of partial slip",
+        "contacts of one height each on simulated surfaces, seeds 308, 60008, 60023",
+        _SWEPT,
+    )
+    flattening_error: float = decision(
+        0.06,
+        "of the excess",
+        "the same of plastic flattening",
+        "summits unloaded one by one leave 4 % (seed 60035): no power of the preload",
+        _SWEPT,
+    )
     least_levels: int = decision(
         3,
         "levels",

@@ -185,7 +185,7 @@ def series_effects(data: JointData) -> list[ContactEffect]:
                         "highest",
                         0.02,
                         3.0,
-                        starts=(0.1, 0.25, 0.5, 1.0),
+                        starts=(0.07, 0.13, 0.22, 0.4, 0.7, 1.2),
                         transform=Transform.LOG,
                     ),
                     *known,

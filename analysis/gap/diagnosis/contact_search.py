@@ -174,7 +174,9 @@ def accept_contact(
     chance = CONTACT.fit_chance if fit.candidates else CONTACT.null_chance
     model = 0.0
     if fit.candidates:
-        model = CONTACT.model_error * max(base.cost - dof, 0.0)
+        own = fit.candidates[-1].effect.model_error
+        share = CONTACT.model_error if own is None else own
+        model = share * max(base.cost - dof, 0.0)
     limit = chi2_limit(chance, dof) + model
     allowed = CONTACT.null_factor * left.threshold + model
     worst = left.directions[0] if left.directions else None
