@@ -25,11 +25,11 @@ from jointbench.signal.band_limited.fit_limits import (
     SATURATED_RATIO,
     WIDEST_TOLERANCE,
 )
+from jointbench.signal.band_limited.gamma_deviance import expected_deviance
 from jointbench.signal.band_limited.line_sample import LineSample, line_sample
 from jointbench.signal.band_limited.map_fit import fit_map
 from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
-    expected_deviance,
     longest_wave,
     measured_density,
     measured_moments,

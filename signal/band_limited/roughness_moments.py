@@ -2,7 +2,6 @@
 """Root mean squares of height, slope and curvature between two wavelengths."""
 
 import numpy as np
-from scipy.special import digamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.band_limited.band_records import (
@@ -191,16 +190,3 @@ def _in_metres(
         curvature=curvature,
         modelled=modelled,
     )
-
-
-def expected_deviance(count: FloatArray) -> tuple[float, float]:
-    """Return mean and standard deviation of the gamma deviance of a right model.
-
-    Args:
-        count: independent ordinates of each bin [-], shape (n_bins,).
-
-    Source:
-        Moments of ln of a gamma variable; the variance by a normal expansion.
-    """
-    mean = 2 * count * (np.log(count) - digamma(count))
-    return float(mean.sum()), float(np.sqrt(np.sum(2 * mean**2)))

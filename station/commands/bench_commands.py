@@ -127,12 +127,12 @@ def simulate_command(
         typer.Argument(metavar="URL", help="Simulated bench, its speed and its port."),
     ] = "sim:plates?speed=1&interval=2&port=31763",
     module: Annotated[
-        str,
+        str | None,
         typer.Option(
-            metavar="NAME,...",
-            help="Modules: 9234, 9231, 9250, 9230, 4431, 9215 or 6363.",
+            metavar="NAME",
+            help="Modules, joined by commas: 9234, 9231, 9250, 9230, 4431, 9215, 6363.",
         ),
-    ] = "",
+    ] = None,
     debug: Debug = False,
 ) -> None:
     """Serve simulated NI devices over gRPC.
@@ -149,4 +149,4 @@ def simulate_command(
     """
     from jointbench.station.commands.simulate import run_simulate
 
-    run_simulate(bench, module)
+    run_simulate(bench, module or "")

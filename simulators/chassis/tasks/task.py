@@ -6,7 +6,7 @@ Source:
 """
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -16,6 +16,7 @@ from jointbench.simulators.chassis.property_values import PropertyValues
 from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal, constants
 from jointbench.simulators.chassis.tasks import task_defaults
 from jointbench.simulators.chassis.tasks.acquisition import Acquisition, Course, Pace
+from jointbench.simulators.chassis.tasks.channel_names import listed_names
 from jointbench.simulators.chassis.tasks.reservations import Reservations
 from jointbench.simulators.chassis.tasks.signals import Signals, digitised
 from jointbench.simulators.chassis.tasks.trigger_plan import trigger_plan
@@ -295,7 +296,7 @@ class SimulatedTask:
         wanted = self.reading.text("CHANNELS_TO_READ")
         if not wanted:
             return list(range(len(self.channels)))
-        return [self.index(name) for name in _names(wanted, self.channels)]
+        return [self.index(name) for name in listed_names(wanted, self.channels)]
 
     def index(self, name: str) -> int:
         """Return the index of a channel by its name.
@@ -317,30 +318,13 @@ class SimulatedTask:
         if not names:
             return list(self.channels)
         return [
-            self.channels[self.index(name)] for name in _names(names, self.channels)
+            self.channels[self.index(name)]
+            for name in listed_names(names, self.channels)
         ]
 
     def _volts(self, first: int, count: int) -> FloatArray:
         volts = self._bench.signals.volts(first, count, self.channels)
         return digitised(volts, self.channels, self.overloaded)
-
-
-def _names(text: str, channels: Sequence[VirtualChannel]) -> list[str]:
-    """Return the names in a list; ``ai0:2`` stands for three, unless it is a name."""
-    known = {channel.name.lower() for channel in channels}
-    found: list[str] = []
-    for word in (part.strip() for part in text.split(",")):
-        stem, colon, last = word.rpartition(":")
-        digits = len(stem) - len(stem.rstrip("0123456789"))
-        if word.lower() in known or not (colon and last.isdigit() and digits):
-            found.append(word)
-            continue
-        base, first = stem[:-digits], int(stem[-digits:])
-        step = 1 if int(last) >= first else -1
-        # No list is longer than the channels there are.
-        span = range(first, int(last) + step, step)[: len(channels) + 1]
-        found += [f"{base}{n}" for n in span]
-    return found
 
 
 def no_memory() -> Refusal:
