@@ -63,6 +63,7 @@ _UNITS = MappingProxyType(
         | {"Nm/mrad": 1e3, "Nm/urad": 1e6},
         "coupling_stiffness": {"N/rad": 1.0, "kN/rad": 1e3, "MN/rad": 1e6},
         "coupling_damping": {"Ns/rad": 1.0, "kNs/rad": 1e3},
+        "curvature": {"1/m": 1.0, "1/mm": 1e3, "1/um": 1e6},
         "rotational_damping": {"Nms/rad": 1.0, "kNms/rad": 1e3},
         "inertia": {"kgm2": 1.0, "gm2": 1e-3, "kgcm2": 1e-4, "kgmm2": 1e-6},
         "angular_rate": {"rad/s": 1.0, "Hz": 2 * math.pi, "rpm": 2 * math.pi / 60},

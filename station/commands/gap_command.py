@@ -68,6 +68,7 @@ def run_gap(
     if report is not None:
         content = gap_report(done.found, title=done.title)
         content = with_structure(content, done.plan, done.found)
+        content = replace(content, sections=(*done.sections, *content.sections))
         if done.scores:
             section = score_section(done.scores, done.unit)
             content = replace(content, sections=(*content.sections, section))

@@ -17,6 +17,7 @@ from jointbench.analysis.gap.catalogue.catalogue import (
     with_real_joints,
 )
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
+from jointbench.analysis.gap.diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
 from jointbench.analysis.gap.diagnosis.single_record import (
@@ -31,6 +32,8 @@ from jointbench.signal.hits.find_hits import HitCriteria
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.gap.contact_section import contact_sections
+from jointbench.station.gap.joint_state_files import names_states, read_joint
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
 from jointbench.station.gap.measured_curves import (
@@ -46,6 +49,7 @@ from jointbench.station.pipeline.judge_again import StoredHits, with_hits
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
+from jointbench.station.screen.page_parts import Section
 from jointbench.station.sources.open_source import is_url
 from jointbench.station.sources.recorded_session import record_session_file
 
@@ -88,6 +92,7 @@ class Examined:
         unit: of the scores.
         remarks: what was left out, and why, a line each.
         plan: places of a bolted structure, or None.
+        sections: further sections of the report, after the verdict.
     """
 
     title: str
@@ -96,6 +101,7 @@ class Examined:
     unit: str = ""
     remarks: tuple[str, ...] = ()
     plan: StructurePlan | None = None
+    sections: tuple[Section, ...] = ()
 
 
 def examine(
@@ -158,6 +164,8 @@ def _examine_named(
     model = paths[0]
     if names_levels(model):
         return _examine_levels(paths, wanted, progress)
+    if names_states(model):
+        return _examine_joint(paths, wanted, progress)
     if len(paths) > 1 or wanted.model is not None:
         raise UsageError(
             f"'{model}' is a model file: give it alone, with the sessions it is about "
@@ -201,6 +209,25 @@ def _examine_levels(
         _RESPONSE_UNITS[int(given.output)],
         level_remarks(given, done),
     )
+
+
+def _examine_joint(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine a joint over its preload, with a contact law as base."""
+    if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' names its states, facts and contact law: give it alone"
+        )
+    _refuse_curves(wanted)
+    if wanted.extended:
+        raise UsageError(
+            "--effects and --with do not apply to a joint over its preload"
+        )
+    progress("reading the states")
+    data, law = read_joint(paths[0])
+    done = diagnose_contact(data, law, without=wanted.without, progress=progress)
+    return Examined(data.name, done.found, sections=contact_sections(done))
 
 
 def _examine_campaign(

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: MIT
+"""Diagnosis of a joint over its preload: verdict and evidence."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.gap.contact_bench.contact_bench import (
+    ContactBench,
+    make_contact_bench,
+)
+from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
+from jointbench.analysis.gap.contact_bench.held_out_torques import (
+    HeldOutTorques,
+    hold_out_torques,
+)
+from jointbench.analysis.gap.contact_bench.joint_states import JointData
+from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
+from jointbench.analysis.gap.diagnosis.contact_search import search_contact
+from jointbench.analysis.gap.diagnosis.diagnose import estimates_of, evidence_of
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
+from jointbench.analysis.gap.model.check_records import Closest
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Estimate,
+    Finding,
+    Gap,
+    NamedEffect,
+    Ranked,
+)
+from jointbench.analysis.gap.model.effect import words_of
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.search.selection_round import Progress, score
+
+MORE_STATES = (
+    "add torques at both ends of the range, rising and falling, with the preload "
+    "measured by a washer"
+)
+UNDETERMINED = "cannot be determined"
+"""First words of a reason when the states cannot show any effect."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactDiagnosis:
+    """Result on a joint over its preload.
+
+    Attributes:
+        found: verdict and evidence.
+        before: each torque predicted without it by the base.
+        after: the same with the effect; that of the base where none is named.
+        bench: of the fits.
+        base: fit of the base.
+        best: fit that is shown; the base unless an effect is accepted.
+    """
+
+    found: Diagnosis
+    before: HeldOutTorques
+    after: HeldOutTorques
+    bench: ContactBench
+    base: Fit
+    best: Fit
+
+
+@one_thread()
+def diagnose_contact(
+    data: JointData,
+    law: PreloadLaw,
+    *,
+    without: frozenset[str] = frozenset(),
+    policy: Policy = STANDARD,
+    progress: Progress | None = None,
+) -> ContactDiagnosis:
+    """Find and name the effect that a contact law lacks to explain a joint.
+
+    Args:
+        data: measured stiffness and damping over preload, with what is known of the
+            joint.
+        law: base with the uncertainty of its inputs.
+        without: names of effects to leave out of the catalogue.
+        policy: thresholds of the verdict.
+        progress: receives one line for each step.
+
+    Raises:
+        UsageError: `without` holds an unknown name.
+        BadData: the law cannot be evaluated at these preloads.
+    """
+    bench = make_contact_bench(data, law, without=without, policy=policy)
+    outcome = search_contact(bench, progress or _silent)
+    final = outcome.bench
+    if not isinstance(final, ContactBench):
+        raise TypeError("the search must return a bench of the type it was given")
+    return _conclude(outcome, final)
+
+
+def _silent(line: str) -> None:
+    """Show no progress."""
+
+
+def _conclude(outcome: SearchOutcome, bench: ContactBench) -> ContactDiagnosis:
+    """Derive the diagnosis from the outcome of a search."""
+    verdict = contact_verdict(outcome, bench)
+    finding, base = verdict.finding, outcome.base
+    accepted = finding in (Finding.NAMED, Finding.AMBIGUOUS)
+    best = outcome.best if accepted else base
+    before = hold_out_torques(bench, base)
+    after = before if best is base else hold_out_torques(bench, best)
+    shown: Sequence[Fit] = ()
+    if accepted:
+        shown = (best,) if finding is Finding.NAMED else outcome.level
+    sigma = np.sqrt(np.diag(bench.data.rows.covariance))
+    found = Diagnosis(
+        verdict=finding,
+        effects=_effects(outcome, bench, shown),
+        candidates=_ranked(outcome, bench),
+        gap_before=_gap(bench, base, before),
+        gap_after=_gap(bench, best, after),
+        prior_deviations={
+            name: (float(b), float(a))
+            for name, b, a in zip(
+                bench.base_names,
+                base.prior_deviations,
+                best.prior_deviations,
+                strict=True,
+            )
+        },
+        base=_base_estimates(bench, best),
+        noise={
+            "sigma_min": float(sigma.min()),
+            "sigma_max": float(sigma.max()),
+            "force_sigma_N": 0.0,
+            "scatter_gain": bench.data.facts.torque_scatter,
+            "scatter_joint": bench.data.facts.reassembly,
+        },
+        null_statistic=(
+            outcome.base_screening.largest,
+            outcome.base_screening.threshold,
+        ),
+        experiment=verdict.step,
+        reason=verdict.reason,
+        explanations=tuple(_labels(f) for f in outcome.level if accepted),
+        policy=bench.policy,
+        closest=_closest(outcome, bench, finding),
+    )
+    return ContactDiagnosis(found, before, after, bench, base, best)
+
+
+def contact_verdict(outcome: SearchOutcome, bench: ContactBench) -> DiagnosisVerdict:
+    """Return the verdict on a search on a joint over its preload.
+
+    Args:
+        outcome: of the search.
+        bench: of its fits.
+    """
+    if short := too_few(bench.data):
+        return DiagnosisVerdict(
+            Finding.UNKNOWN, f"{UNDETERMINED}: {short}", MORE_STATES
+        )
+    acceptance, best = outcome.acceptance, outcome.best
+    if not acceptance.passed:
+        reason = f"no effect of the catalogue explains the joint: {acceptance.reason}"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, MORE_STATES, unexplained=True)
+    chi2 = f"chi2 {best.cost:.1f} for {bench.blocks.dof} values"
+    if not best.candidates:
+        reason = f"the law explains the joint within priors and scatter: {chi2}"
+        step = "none required; more torques and assemblies would show smaller effects"
+        return DiagnosisVerdict(Finding.NONE, reason, step)
+    if len(outcome.level) == 1:
+        reason = f"explains the joint: {chi2}, {outcome.base.cost:.1f} without it"
+        return DiagnosisVerdict(Finding.NAMED, reason, "no rival is near")
+    names = " or ".join(words_of(f.candidates) for f in outcome.level)
+    if len(outcome.level) > bench.policy.most_rivals:
+        reason = f"{UNDETERMINED}: too many explanations fit equally well: {names}"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, _separate(outcome))
+    reason = f"{names}: the difference of their scores is not significant"
+    return DiagnosisVerdict(Finding.AMBIGUOUS, reason, _separate(outcome))
+
+
+def too_few(data: JointData) -> str:
+    """Return why the states cannot show any effect; empty if they can.
+
+    Args:
+        data: of the joint.
+    """
+    seen = np.unique(data.rows.state[~data.rows.bound])
+    levels = np.unique(data.states.level[seen])
+    if levels.size < CONTACT.least_levels:
+        return (
+            f"{levels.size} level(s) of preload have a measured value; a slope and its "
+            f"curvature need {CONTACT.least_levels}"
+        )
+    log_p = data.nominal_log_preload[seen]
+    ratio = float(np.exp(np.ptp(log_p)))
+    if ratio < CONTACT.least_ratio:
+        return (
+            f"the highest preload is {ratio:.2g} times the lowest; "
+            f"{CONTACT.least_ratio:g} times are needed"
+        )
+    return ""
+
+
+def _separate(outcome: SearchOutcome) -> str:
+    """Return the experiment that separates the explanations that fit alike."""
+    steps = []
+    effects = [f.candidates[-1].effect for f in outcome.level]
+    for one in effects:
+        for other in effects:
+            step = one.separates.get(other.name)
+            if step is not None and step not in steps:
+                steps.append(step)
+    return "; or ".join(steps) or MORE_STATES
+
+
+def _probabilities(outcome: SearchOutcome, bench: ContactBench) -> dict[str, float]:
+    """Return the probability of each explanation among those that were fitted.
+
+    Source:
+        Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773, with the charges of the
+        score in place of the prior volumes.
+    """
+    near = min((score(bench, f) for f in outcome.ranked), default=0.0)
+    near += bench.policy.rival_score
+    # A fit near the best that is no explanation was rejected by a test of its own.
+    kept = [f for f in outcome.ranked if f in outcome.level or score(bench, f) >= near]
+    best = [outcome.best] if outcome.best.candidates else []
+    fits = list(dict.fromkeys([outcome.base, *best, *kept]))
+    charge = bench.policy.parameter_charge
+    scores = np.array([f.cost + charge * (f.x.size - f.n_base) for f in fits])
+    weight = np.exp(-0.5 * (scores - scores.min()))
+    return {
+        words_of(f.candidates): float(w)
+        for f, w in zip(fits, weight / weight.sum(), strict=True)
+    }
+
+
+def _effects(
+    outcome: SearchOutcome, bench: ContactBench, fits: Sequence[Fit]
+) -> tuple[NamedEffect, ...]:
+    chance = _probabilities(outcome, bench) if fits else {}
+    return tuple(
+        NamedEffect(
+            c.effect.name,
+            str(c.site),
+            estimates_of(bench, f, k),
+            chance[words_of(f.candidates)],
+            evidence_of(outcome, bench, f),
+        )
+        for f in fits
+        for k, c in enumerate(f.candidates)
+    )
+
+
+def _closest(
+    outcome: SearchOutcome, bench: ContactBench, finding: Finding
+) -> Closest | None:
+    best = outcome.best
+    if finding is not Finding.UNKNOWN or not best.candidates:
+        return None
+    chance = _probabilities(outcome, bench)[words_of(best.candidates)]
+    return Closest(_labels(best), chance, evidence_of(outcome, bench, best))
+
+
+def _labels(fit: Fit) -> tuple[str, ...]:
+    return tuple(c.label for c in fit.candidates) or ("none",)
+
+
+def _gap(bench: ContactBench, fit: Fit, held: HeldOutTorques) -> Gap:
+    words = (
+        f"{len(held.levels)} torques held out, each predicted from the others; "
+        f"{100 * held.share_inside:.0f} % of the values are within their 95 % interval"
+    )
+    deviation = float(np.abs(fit.prior_deviations).max())
+    return Gap(held.gap, held.chi2_per_dof, deviation, bench.views(fit), words)
+
+
+def _ranked(outcome: SearchOutcome, bench: ContactBench) -> tuple[Ranked, ...]:
+    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
+    first = score(bench, rows[0])
+    return tuple(
+        Ranked(
+            _labels(f),
+            score(bench, f),
+            score(bench, f) - first,
+            f.cost / max(bench.blocks.dof, 1),
+            float(np.abs(f.prior_deviations).max()),
+        )
+        for f in rows
+    )
+
+
+def _base_estimates(bench: ContactBench, fit: Fit) -> tuple[Estimate, ...]:
+    """Return the parameters of the law and of the joint, without those of states."""
+    layout = bench.layout
+    sd = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))[: fit.n_base]
+    values = layout.nominal * np.exp(fit.base)
+    return tuple(
+        Estimate(layout.names[k], float(values[k]), float(values[k] * sd[k]), unit)
+        for k, unit in enumerate(layout.units[: layout.state])
+    )

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: MIT
+"""Read a joint over its preload from TOML, a table of states, or identifications."""
+
+import csv
+import io
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import decode, read_bytes
+from jointbench.analysis.gap.contact_bench.joint_states import (
+    QUANTITIES,
+    JointData,
+    JointFacts,
+    JointRows,
+    JointStates,
+)
+from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
+from jointbench.station.files.toml_file import first_problem, read_toml
+from jointbench.station.files.toml_text import load_toml
+from jointbench.station.gap.identified_values import identified_value
+from jointbench.station.gap.preload_law_tables import contact_law, modulus_of
+from jointbench.station.schemas.joint_states_model import (
+    BodiesTable,
+    BoltedJointTable,
+    JointStatesModel,
+    JointStateTable,
+)
+
+CONE_ANGLE = math.radians(30.0)
+"""Half angle of the pressure cone of a bolt: 25 to 35 degrees in VDI 2230."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredValue:
+    """One value of a state.
+
+    Attributes:
+        state: index of the state.
+        quantity: key, ``"kn"`` and so on.
+        value: [SI].
+        sd: of the logarithm [-].
+        bound: whether it is only known to be larger.
+    """
+
+    state: int
+    quantity: str
+    value: float
+    sd: float
+    bound: bool
+
+
+def names_states(path: Path) -> bool:
+    """Return whether a TOML file describes a joint over its preload."""
+    try:
+        content = load_toml(path)
+    except (BadData, OSError, ValueError, RecursionError):
+        return False  # the reader of the model reports the fault
+    return "law" in content and ("states" in content or "table" in content)
+
+
+def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
+    """Read the measured values of a joint, and its contact law.
+
+    Args:
+        path: of the TOML file; files that it names are beside it.
+
+    Raises:
+        BadData: the TOML file or one that it names breaks a rule.
+    """
+    model = read_toml(path, JointStatesModel)
+    states = model.states
+    if model.table is not None:
+        states = read_state_table(path.parent / model.table)
+    values = _values(states, path.parent)
+    if not values:
+        raise BadData(f"{named(path)} holds no measured value; add kn = '6e7 N/m' ...")
+    facts = _facts(model.joint, model.bodies)
+    data = JointData(
+        path.stem,
+        facts,
+        _states(states),
+        _rows(values, states, _covariance(path, model, values)),
+    )
+    return data, contact_law(model.law, model.bodies, facts)
+
+
+def read_state_table(path: Path) -> tuple[JointStateTable, ...]:
+    """Read states from a CSV file with a header of keys and units.
+
+    A column is ``torque:N m``, ``branch``, ``assembly``, ``kn:N/m``, ``kn_sd:%`` and so
+    on: the keys are those of a state in TOML, an empty cell is not measured.
+
+    Args:
+        path: of the table.
+
+    Raises:
+        BadData: a column or cell cannot be used.
+    """
+    text, _ = decode(read_bytes(path), path)
+    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+    reader = csv.reader(io.StringIO("\n".join(lines)))
+    header = [cell.strip() for cell in next(reader, [])]
+    keys = [cell.partition(":")[0] for cell in header]
+    units = [cell.partition(":")[2] for cell in header]
+    found = []
+    for number, cells in enumerate(reader, 1):
+        content = {
+            key: _cell(cell.strip(), unit)
+            for key, cell, unit in zip(keys, cells, units, strict=False)
+            if cell.strip()
+        }
+        try:
+            found.append(JointStateTable.model_validate(content))
+        except ValidationError as error:
+            problem = first_problem(error, JointStateTable)
+            raise BadData(f"{named(path)}, row {number}: {problem}") from error
+    if not found:
+        raise BadData(
+            f"{named(path)} holds no state; write one per line below its header"
+        )
+    return tuple(found)
+
+
+def _cell(cell: str, unit: str) -> str | int:
+    """Return a cell as TOML would hold it: a word, a count, a number with its unit."""
+    if unit:
+        return f"{cell} {unit}"
+    return int(cell) if cell.isdigit() else cell
+
+
+def _states(states: tuple[JointStateTable, ...]) -> JointStates:
+    def column(name: str) -> FloatArray:
+        values = [getattr(s, name) for s in states]
+        return np.array([np.nan if v is None else float(v) for v in values])
+
+    assembly = np.unique([s.assembly for s in states], return_inverse=True)[1]
+    return JointStates(
+        torque=column("torque"),
+        preload=column("preload"),
+        preload_sd=column("preload_sd"),
+        assembly=assembly.astype(np.int64),
+        falling=np.array([s.branch == "falling" for s in states]),
+        time=column("time"),
+        shear=column("shear"),
+        frequency=column("frequency"),
+    )
+
+
+def _values(states: tuple[JointStateTable, ...], folder: Path) -> list[MeasuredValue]:
+    """Return all values in the order of states and keys."""
+    found = []
+    for k, state in enumerate(states):
+        for quantity in QUANTITIES:
+            key = quantity.value
+            given = getattr(state, key)
+            sd = getattr(state, f"{key}_sd")
+            if given is None and key in state.parameters and state.identified:
+                parameter = state.parameters[key]
+                given_sd = identified_value(folder / state.identified, parameter)
+                if given_sd is None:
+                    continue
+                given, sd = (given_sd.value, given_sd.bound), given_sd.sd
+            if given is not None:
+                found.append(MeasuredValue(k, key, given[0], sd, given[1]))
+    return found
+
+
+def _rows(
+    values: list[MeasuredValue],
+    states: tuple[JointStateTable, ...],
+    covariance: FloatArray | None,
+) -> JointRows:
+    keys = [q.value for q in QUANTITIES]
+    if covariance is None:
+        covariance = np.diag([max(v.sd, 1e-6) ** 2 for v in values])
+        place = {(v.state, v.quantity): i for i, v in enumerate(values)}
+        for k, state in enumerate(states):
+            for pair, value in state.correlation.items():
+                one, _, other = pair.partition("_")
+                if (k, one) not in place or (k, other) not in place:
+                    raise BadData(
+                        f"state {k + 1}: correlation {pair!r} names values that it "
+                        "does not have; write e.g. correlation = { kn_kt = 0.4 }"
+                    )
+                i, j = place[k, one], place[k, other]
+                root = math.sqrt(covariance[i, i] * covariance[j, j])
+                covariance[i, j] = covariance[j, i] = value * root
+    return JointRows(
+        state=np.array([v.state for v in values]),
+        quantity=np.array([keys.index(v.quantity) for v in values]),
+        value=np.log([v.value for v in values]),
+        covariance=covariance,
+        bound=np.array([v.bound for v in values]),
+    )
+
+
+def _covariance(
+    path: Path, model: JointStatesModel, values: list[MeasuredValue]
+) -> FloatArray | None:
+    """Return the covariance of the logarithms that a file states, if one is named."""
+    if model.covariance is None:
+        return None
+    source = path.parent / model.covariance
+    text, _ = decode(read_bytes(source), source)
+    try:
+        rows = [[float(c) for c in line.split(",")] for line in text.split() if line]
+        matrix = np.array(rows)
+    except ValueError as error:
+        raise BadData(
+            f"{named(source)} is no table of numbers; write one row of the covariance "
+            "per line, separated by commas"
+        ) from error
+    if matrix.shape != (len(values), len(values)):
+        raise BadData(
+            f"{named(source)} has the shape {matrix.shape}; the file has {len(values)} "
+            "values, so it must have as many rows and columns, in their order"
+        )
+    return matrix
+
+
+def _facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:
+    cone = None
+    if joint.head_diameter is not None and joint.clamped_length is not None:
+        width = joint.head_diameter + joint.clamped_length * math.tan(CONE_ANGLE)
+        cone = 0.5 * width
+    return JointFacts(
+        bolts=joint.bolts,
+        diameter=joint.diameter,
+        nut_factor=joint.nut_factor,
+        nut_factor_sd=joint.nut_factor_sd,
+        torque_scatter=joint.torque_scatter,
+        reassembly=joint.reassembly,
+        area=joint.area,
+        modulus=modulus_of(bodies),
+        poisson=bodies.poisson,
+        rocking_radius=joint.rocking_radius,
+        bolt_radius=joint.bolt_radius,
+        cone_radius=cone,
+    )

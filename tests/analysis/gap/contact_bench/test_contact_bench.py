@@ -1,0 +1,108 @@
+"""The contact bench: slopes, effects that are off, bounds, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from joint_campaigns import FACTS, LAW, joint
+
+from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.analysis.gap.contact_bench.contact_bench import make_contact_bench
+from jointbench.analysis.gap.contact_bench.contact_catalogue import CONTACT_NAMES
+from jointbench.analysis.gap.contact_bench.joint_states import JointRows
+from jointbench.analysis.gap.contact_bench.preload_laws import (
+    AsperityPreloadLaw,
+    LinearPreloadLaw,
+    asperity_parameters,
+    fractal_parameters,
+    mindlin_ratio,
+)
+from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
+
+
+def test_slopes_of_the_base_are_differences() -> None:
+    """Grouped differences equal those of one coordinate after the other."""
+    bench = make_contact_bench(joint(seed=1), LAW)
+    x = 0.5 * bench.base_sd
+    slopes = bench.slopes(x, (), FULL)
+    for k in range(0, x.size, 3):
+        step = np.zeros(x.size)
+        step[k] = 1e-6
+        change = bench.residual(x + step, (), FULL) - bench.residual(x - step, (), FULL)
+        np.testing.assert_allclose(slopes[:, k], change / 2e-6, atol=2e-3)
+
+
+def test_effects_vanish_at_off() -> None:
+    """Every effect with an amplitude of 0 leaves the base as it is."""
+    bench = make_contact_bench(joint(seed=2), LAW)
+    x = np.zeros(bench.base_sd.size)
+    plain = bench.predict(x, ())
+    for candidate in (*bench.candidates, *bench.probes):
+        first, *shape = candidate.effect.parameters
+        if first.off is not None:
+            start = [first.off, *(p.encode(p.starts[0]) for p in shape)]
+            term = Term(candidate, np.array(start))
+            np.testing.assert_array_equal(bench.predict(x, (term,)), plain)
+
+
+def test_a_value_known_from_below_acts_upwards_only() -> None:
+    """A bound costs nothing where the model is above it, and much where it is below."""
+    data = joint(seed=3)
+    rows = data.rows
+    bound = np.zeros(rows.value.size, dtype=bool)
+    bound[0] = True
+    seen = JointRows(rows.state, rows.quantity, rows.value, rows.covariance, bound)
+    bench = make_contact_bench(replace(data, rows=seen), LAW)
+    x = np.zeros(bench.base_sd.size)
+    x[bench.layout.factor] = 1.0
+    above = bench.residual(x, (), FULL)[0]
+    x[bench.layout.factor] = -1.0
+    below = bench.residual(x, (), FULL)[0]
+    assert above < 0.01
+    assert below > 5.0
+    assert bench.blocks.dof == rows.value.size - 1
+
+
+def test_gaussian_summits_have_the_limits_of_greenwood_and_williamson() -> None:
+    """At light loads stiffness grows nearly as the load, over the summits' height."""
+    law = AsperityPreloadLaw(
+        asperity_parameters((1e-6, 0.1), (0.1, 0.1), (2e4, 0.1), (1e11, 0.05)),
+        0.01,
+        0.3,
+    )
+    log_p = np.log([1.0, 2.0])
+    normal, tangential = law.log_stiffness(log_p, np.zeros(4))
+    assert np.diff(normal)[0] / np.log(2.0) == pytest.approx(0.95, abs=0.03)
+    assert np.exp(tangential - normal) == pytest.approx(mindlin_ratio(0.3))
+
+
+def test_a_linear_law_is_the_load_over_a_length() -> None:
+    """K = P/(share h_rms)."""
+    parameters = asperity_parameters((1e-6, 0.1), (0.1, 0.1), (1e4, 0.1), (1e11, 0.1))
+    share = replace(parameters[1], name="share", value=0.4)
+    law = LinearPreloadLaw((parameters[0], share), 0.3)
+    normal, _ = law.log_stiffness(np.log([4000.0]), np.zeros(2))
+    assert np.exp(normal[0]) == pytest.approx(4000.0 / 0.4e-6)
+
+
+def test_fractal_parameters_keep_their_order() -> None:
+    """Dimension, roughness and hardness with their relative sd."""
+    found = fractal_parameters((2.5, 0.01), (1e-10, 0.5), (2e9, 0.1))
+    assert [p.name for p in found] == ["dimension", "roughness", "hardness"]
+    assert [p.log_sd for p in found] == [0.01, 0.5, 0.1]
+
+
+def test_unknown_names_and_impossible_values_are_refused() -> None:
+    """One line with the value and the way out."""
+    with pytest.raises(UsageError, match="no effect of the contact bench is called"):
+        make_contact_bench(joint(), LAW, without=frozenset({"gap"}))
+    with pytest.raises(BadData, match="area is 0"):
+        replace(FACTS, area=0.0)
+    with pytest.raises(BadData, match="bandwidth"):
+        AsperityPreloadLaw(
+            asperity_parameters((1e-9, 0.1), (1.0, 0.1), (1.0, 0.1), (1e11, 0.1)),
+            0.01,
+            0.3,
+        ).log_stiffness(np.zeros(1), np.zeros(4))
+    assert len(set(CONTACT_NAMES)) == len(CONTACT_NAMES) == 15
