@@ -19,7 +19,7 @@ EVENTS, LOG = "events", "log"
 def read_log(path: Path) -> tuple[tuple[dict[str, Any], ...], bool]:
     """Return the entries of the log so far, and whether it is that of a recording.
 
-    The file is opened each time, so that a finished session that took its place is seen.
+    The file is opened each time, so that the finished session in its place is seen.
 
     Args:
         path: of a recording, or of a session that was recorded.

@@ -7,6 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.signal.surface.applied_filters import long_waves_removed
 from jointbench.signal.surface.gaussian_filter import transmission
 
 _SHORTEST = 2.0
@@ -66,18 +67,7 @@ def known_transfer(surface: Surface) -> KnownTransfer:
     def samples(length: float | None) -> float | None:
         return None if length is None else length / pitch
 
-    long = given.cutoff_long if _long_waves_removed(surface) else None
+    long = given.cutoff_long if long_waves_removed(surface) else None
     return KnownTransfer(
         samples(given.cutoff_short), samples(long), samples(given.stylus_radius)
     )
-
-
-def _long_waves_removed(surface: Surface) -> bool:
-    """Return whether lambda_c was applied to the heights."""
-    for one in surface.provenance:
-        detail = dict(one.detail)
-        if one.name == "gaussian_filter" and float(detail["long_m"]) > 0:
-            return True
-        if one.name == "recognise" and "filtered" in str(detail.get("exported", "")):
-            return True
-    return False

@@ -106,6 +106,11 @@ def local_residual(residual: ComplexArray) -> FloatArray:
     )
 
 
+def local_size(lines: FrfLines) -> int:
+    """Return how many real values `local_residual` averages, over all FRFs."""
+    return int(2 * lines.response.shape[0] * min(_LOCAL_LINES, lines.laplace.size))
+
+
 def model_error(
     residual: ComplexArray, noise: FloatArray, response: ComplexArray
 ) -> float:
@@ -165,13 +170,13 @@ def residual_around(
     Returns:
         Factor on the covariance of each pole [-], shape (n_modes,).
     """
-    standard = residual / np.sqrt(variance)
     omega = lines.laplace.imag
     pitch = float(np.median(np.diff(omega)))
     factors = []
     for p, width in zip(pole, measured_width(lines, pole), strict=True):
         reach = max(_REACH_WIDTHS * width, _REACH_LINES * pitch)
-        around = standard[:, np.abs(omega - p.imag) < reach]
+        near = np.abs(omega - p.imag) < reach
+        around = residual[:, near] / np.sqrt(variance[:, near])
         inside = int(np.count_nonzero(np.abs(pole.imag - p.imag) < reach))
         factors.append(_power(around, inside) * _correlation_length(around))
     return np.array(factors)

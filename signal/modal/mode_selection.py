@@ -22,6 +22,7 @@ from jointbench.signal.modal.line_noise import (
     line_noise,
     line_variance,
     local_level,
+    local_size,
     model_error,
     residual_around,
 )
@@ -46,6 +47,8 @@ from jointbench.signal.modal.shared_errors import (
 _FIRST_MODEL_ERROR = 0.02
 # A mode whose damping has a relative sd above this is dropped.
 _VAGUE = 1.0 / 3.0
+# ... unless it explains this many times what is left around it, and is alone there.
+_EXPLAINED = 1000.0
 _STEPS = 30
 _FEW_STEPS = 6
 # Passes over the residual in search of modes that were missed.
@@ -128,15 +131,17 @@ def fit_modes(
     # The response itself is rough at resonances; the residual of a fit is not.
     noise = line_noise(lines.response, scatter, poles.residual)
     error, variance = _weighed(lines, noise, poles)
+    searched = -1
     for _ in range(_SEARCHES if refine else 0):
         whole = _whole(lines, poles, noise, variance)
         beyond = find_beyond(whole)
         if beyond.size == poles.beyond.size:
+            searched = poles.pole.size
             break
         poles = _again(lines, poles.pole, beyond, variance)
         noise = line_noise(lines.response, scatter, poles.residual)
         error, variance = _weighed(lines, noise, poles)
-    start = _Start(candidates, held, noise, variance, error, steps, chosen)
+    start = _Start(candidates, held, noise, variance, error, steps, chosen, searched)
     kept = needed(
         lines,
         poles.pole,
@@ -190,6 +195,8 @@ class _Start:
         error: the model error, as a share of the local level [-].
         steps: most evaluations of a refinement.
         before: candidates of the first fit, to be tried again; None once they were.
+        searched: number of modes with which no further pole beyond the band was found;
+            -1 where that is not known.
     """
 
     candidates: ComplexArray
@@ -199,6 +206,7 @@ class _Start:
     error: float
     steps: int
     before: IntArray | None
+    searched: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -261,8 +269,9 @@ def _completed(
     Weights are taken again: what was missing counted as model error.
     """
     poles = done.poles
-    whole = _final(lines, start, done)
-    beyond = find_beyond(whole)
+    beyond = poles.beyond
+    if poles.pole.size != start.searched:
+        beyond = find_beyond(_final(lines, start, done))
     if added.size == 0 and beyond.size == poles.beyond.size:
         return None
     everything = np.append(start.candidates, added)
@@ -286,6 +295,7 @@ def _completed(
         variance=variance,
         error=error,
         before=None,
+        searched=-1,
     )
     chosen = np.append(done.chosen, place)
     left = needed(
@@ -359,7 +369,7 @@ def _first_fit(
     """Refine what is needed; poles that end beyond the band become computational."""
     none = np.empty(0, complex)
     chosen = needed(lines, candidates, held, noise, variance, none)
-    poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
+    poles = refine_poles(lines, candidates[chosen], variance, steps=steps, rough=True)
     aside = unresolved(lines, poles.pole) & ~held[chosen]
     if not aside.any() or steps == 0:
         return chosen, poles
@@ -382,6 +392,8 @@ def _vague(lines: FrfLines, poles: RefinedPoles, significance: FloatArray) -> Bo
 
     Two poles on one peak are both vague, and the fit is as good with one: of
     overlapping vague poles only the least significant goes, then the rest are refitted.
+    A peak that no linear mode fits, as that of a mode which softens by more than its
+    width, is a mode all the same: it explains nearly all that is there.
     """
     width = measured_width(lines, poles.pole)
     sd = np.sqrt(poles.covariance[:, 0, 0] * poles.inflation)
@@ -389,4 +401,6 @@ def _vague(lines: FrfLines, poles: RefinedPoles, significance: FloatArray) -> Bo
     apart = np.abs(poles.pole.imag[:, None] - poles.pole.imag)
     overlap = apart < 2.0 * (width[:, None] + width)
     rival = overlap & vague & (significance < significance[:, None])
-    return np.asarray(vague & ~rival.any(axis=1))
+    alone = np.count_nonzero(overlap, axis=1) == 1
+    peak = alone & (significance > _EXPLAINED * local_size(lines))
+    return np.asarray(vague & ~rival.any(axis=1) & ~peak)

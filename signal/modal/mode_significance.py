@@ -5,6 +5,8 @@ A mode is needed where leaving it out raises chi-squared by more than noise and 
 local residual can explain.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import (
@@ -12,6 +14,7 @@ from jointbench.acquisition.basics.arrays import (
     ComplexArray,
     FloatArray,
     IntArray,
+    squared_size,
 )
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
@@ -21,6 +24,8 @@ from jointbench.signal.modal.lsfd import fit_residues, pole_significance
 # Probability that noise anywhere in the band passes for a mode; every line is one test
 # (Bonferroni).
 _CHANCE = 1e-6
+# FRFs that are looked at first: where they need every mode, so do all.
+_FIRST_FRFS = 12
 
 
 def least_significance(lines: FrfLines) -> float:
@@ -54,6 +59,8 @@ def needed(
     """
     left = np.arange(pole.size)
     limit = least_significance(lines)
+    if _all_needed(lines, pole, noise, variance, beyond):
+        return left
     while left.size:
         if residual is None:
             fit = fit_residues(lines, np.append(pole[left], beyond), variance)
@@ -68,6 +75,28 @@ def needed(
         weak &= found <= max(0.1 * limit, float(found[weak].min()))
         left = left[~weak]
     return left
+
+
+def _all_needed(
+    lines: FrfLines,
+    pole: ComplexArray,
+    noise: FloatArray,
+    variance: FloatArray,
+    beyond: ComplexArray,
+) -> bool:
+    """Return whether a few FRFs need every pole; False where that is not known.
+
+    The significance is a sum over FRFs of what is not negative, so that a part of them
+    gives a lower bound.
+    """
+    if lines.response.shape[0] < 2 * _FIRST_FRFS or pole.size == 0:
+        return False
+    level = np.sum(squared_size(lines.response) / noise, axis=1)
+    rows = np.argsort(-level)[:_FIRST_FRFS]
+    few = replace(lines, response=lines.response[rows])
+    fit = fit_residues(few, np.append(pole, beyond), variance[rows])
+    found = significance(few, few.response - fit.synthesis, pole, noise[rows], beyond)
+    return bool(np.all(found >= least_significance(lines)))
 
 
 def significance(

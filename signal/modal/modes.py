@@ -27,6 +27,7 @@ from jointbench.signal.modal.modal_model import ModalModel, build_model
 from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
 from jointbench.signal.modal.repeated_roots import separate_repeated
 from jointbench.signal.modal.residual_search.doubtful_neighbours import neighbour_words
+from jointbench.signal.modal.response_harmonics import without_vague_harmonics
 from jointbench.signal.modal.shared_errors import ForceNoise
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
@@ -165,6 +166,7 @@ def identify_modes(
     done = _record(reason, weighed, table, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
     model, remarks = separate_repeated(model, lines, fitted, scatter)
+    model, harmonics = without_vague_harmonics(model)
     return ModalResult(
         model=model,
         stabilisation=table,
@@ -173,7 +175,7 @@ def identify_modes(
         settings=settings,
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
-        remarks=(*remarks, *nulls, *neighbour_words(fitted.doubts)),
+        remarks=(*remarks, *nulls, *harmonics, *neighbour_words(fitted.doubts)),
     )
 
 

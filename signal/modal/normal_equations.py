@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.compiled import compiled
 
 _RIDGE = 1e-13
 # Up to this number of rows the products of columns cost more than they save.
@@ -37,34 +38,39 @@ def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
     upper = np.triu_indices(size)
     packed = np.zeros((weight.shape[0], upper[0].size))
     real, imag = (np.ascontiguousarray(p.T) for p in (columns.real, columns.imag))
-    pairs, other = (np.empty((n, _LINES_AT_ONCE)) for n in (upper[0].size, size))
+    pairs = np.empty((upper[0].size, _LINES_AT_ONCE))
     for first in range(0, columns.shape[0], _LINES_AT_ONCE):
         here = slice(first, first + _LINES_AT_ONCE)
         count = real[0, here].size
-        _products(real[:, here], imag[:, here], pairs[:, :count], other[:, :count])
+        _products(real, imag, first, count, pairs)
         packed += weight[:, here] @ pairs[:, :count].T
-    gram = np.empty((weight.shape[0], size, size))
-    gram[:, upper[0], upper[1]] = gram[:, upper[1], upper[0]] = packed
-    return gram
+    place = np.empty((size, size), int)
+    place[upper] = place.T[upper] = np.arange(upper[0].size)
+    return np.asarray(packed[:, place])
 
 
+@compiled()
 def _products(
-    real: FloatArray, imag: FloatArray, pairs: FloatArray, other: FloatArray
+    real: FloatArray, imag: FloatArray, first: int, count: int, pairs: FloatArray
 ) -> None:
     """Form the products of each column with itself and those after it, in place.
 
     Args:
         real: parts of the columns, shape (n, n_lines).
         imag: same shape.
-        pairs: receives the products, shape (n (n + 1) / 2, n_lines).
-        other: room for one column's, shape (n, n_lines).
+        first: line.
+        count: of lines.
+        pairs: receives the products, shape (n (n + 1) / 2, at least count).
     """
-    first = 0
+    row = 0
     for i in range(real.shape[0]):
-        past = first + real.shape[0] - i
-        np.multiply(real[i], real[i:], out=pairs[first:past])
-        pairs[first:past] += np.multiply(imag[i], imag[i:], out=other[i:])
-        first = past
+        a, b = real[i, first : first + count], imag[i, first : first + count]
+        for j in range(i, real.shape[0]):
+            c, d = real[j, first : first + count], imag[j, first : first + count]
+            into = pairs[row]
+            for k in range(count):
+                into[k] = a[k] * c[k] + b[k] * d[k]
+            row += 1
 
 
 def correlations(columns: ComplexArray, values: ComplexArray) -> FloatArray:

@@ -46,6 +46,8 @@ _PATIENCE = 1.0
 # which the residual is noise, a step that is small over the half-power half-width, and
 # what it may leave of a standard deviation: then the optimum is one step away.
 _NEWTON, _NOISE_ONLY, _NEAR, _NEGLIGIBLE = 1e-3, 1.5, 1e-3, 1e-2
+# The same where another refinement follows.
+_ROUGHLY_NEAR, _ROUGHLY = 3e-2, 1.0
 _STUCK = 1e6
 
 
@@ -121,6 +123,7 @@ def refine_poles(
     doubt: FloatArray | None = None,
     begin: ComplexArray | None = None,
     steps: int = 30,
+    rough: bool = False,
 ) -> RefinedPoles:
     """Refine poles by Levenberg-Marquardt on the output error.
 
@@ -134,6 +137,8 @@ def refine_poles(
             start grows with it; None for 1.
         begin: start of the search from an earlier fit; None for `start`.
         steps: most evaluations; 0 keeps the start and only returns its covariance.
+        rough: whether the poles may be a standard deviation from the optimum, because
+            another refinement follows.
 
     Returns:
         Refined poles; those that diverged are reset to their start.
@@ -145,7 +150,8 @@ def refine_poles(
     extra = np.empty(0, complex) if beyond is None else beyond
     prior = PolePrior.around(lines, start, extra, 1.0 if doubt is None else doubt)
     pole = np.append(start if begin is None else begin, extra)
-    pole, here, converged = _search(lines, prior, pole, variance, steps)
+    near = (_ROUGHLY_NEAR, _ROUGHLY) if rough else (_NEAR, _NEGLIGIBLE)
+    pole, here, converged = _search(lines, prior, pole, variance, steps, near)
     joint = _joint_covariance(here, prior)
     own = pole[:n_modes]
     return RefinedPoles(
@@ -170,8 +176,12 @@ def _search(
     pole: ComplexArray,
     variance: FloatArray,
     steps: int,
+    near: tuple[float, float],
 ) -> tuple[ComplexArray, _Point, BoolArray]:
-    """Return the poles at the optimum, their cost terms, and which converged."""
+    """Return the poles at the optimum, their cost terms, and which converged.
+
+    `near` limits the last step and what it leaves, see `_is_last`.
+    """
     free, damping = np.ones(pole.size, bool), 1e-3
     here, settled = _evaluate(lines, pole, variance), False
     moved = np.full(pole.size, np.inf)
@@ -181,7 +191,7 @@ def _search(
         lost = lost_poles(lines, trial, prior)
         if damping <= _NEWTON and not lost.any():
             moved = np.abs(trial - pole) / measured_width(lines, pole)
-            if _is_last(moved, gain, here):
+            if _is_last(moved, gain, here, near):
                 return trial, _moved_on(lines, here, pole, trial - pole), free
         if lost.any() and damping > _PATIENCE:
             pole, free = np.where(lost, prior.start, pole), free & ~lost
@@ -216,7 +226,9 @@ def _is_small(moved: FloatArray, gain: float, here: _Point, prior: PolePrior) ->
     return slight and gain < _SMALL_GAIN * unit
 
 
-def _is_last(moved: FloatArray, gain: float, here: _Point) -> bool:
+def _is_last(
+    moved: FloatArray, gain: float, here: _Point, near: tuple[float, float]
+) -> bool:
     """Return whether the optimum is one Gauss-Newton step away.
 
     What a step leaves is about its square, both over the half-power half-width, where
@@ -226,7 +238,7 @@ def _is_last(moved: FloatArray, gain: float, here: _Point) -> bool:
     unit = here.cost / (2.0 * here.residual.size)
     largest = float(np.max(moved, initial=0.0))
     left = largest * np.sqrt(max(gain, 0.0))
-    return bool(unit < _NOISE_ONLY and largest < _NEAR and left < _NEGLIGIBLE)
+    return bool(unit < _NOISE_ONLY and largest < near[0] and left < near[1])
 
 
 def _moved_on(

@@ -8,35 +8,43 @@ from urllib.parse import parse_qsl, urlsplit
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.chassis.faults import parse_faults
-from jointbench.simulators.chassis.server import ChassisSetup
+from jointbench.simulators.chassis.modules.inventory import (
+    DEFAULT_MODULE,
+    module_list,
+)
+from jointbench.simulators.chassis.server import LOOPBACK, ChassisSetup
 from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.calibration_mass import CalibrationMass
 from jointbench.simulators.plates.plates_bench import PlatesBench
 
 _KEYS = (
-    "seed, speed, level, interval, fates, faults, modules, top_rate, trigger, port; "
-    "sim:mass also has mass, hammer, response"
+    "seed, speed, level, interval, fates, faults, module, modules, name, top_rate, "
+    "trigger, port, host; sim:mass also has mass, hammer, response"
 )
+_SPECIMENS = ("plates", "mass", "sine")
 
 
 def is_plates_url(url: str) -> bool:
-    """Return whether a URL names a chassis, with the plates or the mass."""
+    """Return whether a URL names a chassis with plates, a mass or a sine."""
     parts = urlsplit(url)
-    return parts.scheme == "sim" and parts.path in ("plates", "mass")
+    return parts.scheme == "sim" and parts.path in _SPECIMENS
 
 
 def chassis_from_url(url: str) -> ChassisSetup:
     """Read a set-up.
 
     Args:
-        url: ``sim:plates``, or ``sim:mass`` for a mass to calibrate on, and, as a
-            query, any of: ``seed``; ``speed``, seconds of
-            signal per second or ``max``; ``level``, usual peak force [N];
-            ``interval``, between unrequested strokes [s]; ``fates`` of the strokes in
-            turn, for example ``good,double*2,weak``; ``faults`` as `parse_faults` reads
-            them; ``modules``; ``top_rate`` [Hz]; ``trigger``, 0 for modules without an
-            analogue trigger; ``port``. The mass has ``mass`` [kg], and ``hammer`` and
-            ``response``, true sensitivity over the usual one.
+        url: ``sim:plates``, ``sim:mass`` for a mass to calibrate on, or ``sim:sine``
+            for a sine in the limits of each channel, and, as a query, any of:
+            ``seed``; ``speed``, seconds of signal per second or ``max``; ``level``,
+            usual peak force [N]; ``interval``, between unrequested strokes [s];
+            ``fates`` of the strokes in turn, for example ``good,double*2,weak``;
+            ``faults`` as `parse_faults` reads them; ``module``, for example ``9231``,
+            or one for each slot, ``9234,9250``; ``modules``, how many; ``name`` of the
+            chassis; ``top_rate`` of an external clock [Hz]; ``trigger``, 0 for modules
+            without an analogue trigger; ``port``; ``host``, the loopback interface
+            unless stated. The mass has ``mass`` [kg], and ``hammer`` and ``response``,
+            true sensitivity over the usual one.
 
     Raises:
         UsageError: an unknown key, or an invalid value.
@@ -62,11 +70,18 @@ def chassis_from_url(url: str) -> ChassisSetup:
     bench = PlatesBench(operator=operator, seed=seed)
     if urlsplit(url).path == "mass":
         bench = _mass_bench(bench, take)
+    top_rate = values.pop("top_rate", "")
+    module = values.pop("module", DEFAULT_MODULE)
+    modules = int(take("modules", "1", int))
+    module_list(module, modules)
     setup = ChassisSetup(
-        bench=bench,
+        bench=None if urlsplit(url).path == "sine" else bench,
         speed=math.inf if speed == "max" else _positive(speed),
-        modules=int(take("modules", "1", int)),
-        top_rate=take("top_rate", "51200", float),
+        module=module,
+        modules=modules,
+        name=values.pop("name", "cDAQSim1"),
+        host=values.pop("host", LOOPBACK),
+        top_rate=_positive(top_rate) if top_rate else None,
         analogue_trigger=bool(take("trigger", "1", int)),
         faults=parse_faults(values.pop("faults", "")),
         port=int(take("port", "0", int)),

@@ -8,34 +8,19 @@ of NI's device server; a simulated server that used a copy would test the copy.
 from typing import Any
 
 import grpc
+from nidaqmx import constants
 from nidaqmx._stubs import nidaqmx_pb2, nidaqmx_pb2_grpc  # noqa: PLC2701
-from nidaqmx.constants import (
-    AccelSensitivityUnits,
-    AccelUnits,
-    AcquisitionType,
-    ExcitationSource,
-    ForceIEPESensorSensitivityUnits,
-    ForceUnits,
-    OverwriteMode,
-    ReadRelativeTo,
-)
 from nidaqmx.error_codes import DAQmxErrors
 
 __all__ = [
-    "AccelSensitivityUnits",
-    "AccelUnits",
-    "AcquisitionType",
     "DAQmxErrors",
     "Daqmx",
-    "ExcitationSource",
-    "ForceIEPESensorSensitivityUnits",
-    "ForceUnits",
-    "OverwriteMode",
-    "ReadRelativeTo",
     "Refusal",
     "Servicer",
     "add_servicer",
-    "attribute_of",
+    "bad_value",
+    "constants",
+    "number_of",
     "refuse",
 ]
 
@@ -54,19 +39,53 @@ class Refusal(Exception):
 
     def __init__(self, code: int, words: str, *, read: int | None = None) -> None:
         super().__init__(words)
-        self.code = code
+        self.code = int(code)
         self.read = read
 
 
-def refuse(context: grpc.ServicerContext, refusal: Refusal) -> None:
+def refuse(context: grpc.ServicerContext, refusal: Refusal, task: str = "") -> None:
     """End a call as NI's server does, with the code in the trailing metadata."""
     metadata = [("ni-error", str(refusal.code))]
     if refusal.read is not None:
         metadata.append(("ni-samps-per-chan-read", str(refusal.read)))
     context.set_trailing_metadata(tuple(metadata))
-    context.abort(grpc.StatusCode.UNKNOWN, f"{refusal}\n\nStatus Code: {refusal.code}")
+    name = f"\n\nTask Name: {task}" if task else ""
+    text = f"{refusal}{name}\n\nStatus Code: {refusal.code}"
+    context.abort(grpc.StatusCode.UNKNOWN, text)
 
 
-def attribute_of(request: Any) -> int:
-    """Return the attribute of a request, from either of two fields."""
-    return int(request.attribute_raw or request.attribute)
+def bad_value(
+    name: str,
+    asked: object,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    choice: tuple[object, ...] = (),
+    channel: str = "",
+) -> Refusal:
+    """Return the refusal of a property's value, in the words of NI-DAQmx.
+
+    Args:
+        name: of the property, without ``DAQmx_``.
+        asked: value.
+        low: least value supported.
+        high: largest value supported.
+        choice: values supported.
+        channel: concerned.
+    """
+    lines = [
+        "Requested value is not a supported value for this property. The property "
+        "value may be invalid because it conflicts with another property.\n",
+        f"Property: DAQmx_{name}",
+        f"Requested Value: {asked}",
+    ]
+    lines += [] if high is None else [f"Maximum Value:  {high:f}"]
+    lines += [] if low is None else [f"Minimum Value: {low:f}"]
+    lines += [f"You Can Select: {', '.join(map(str, choice))}"] if choice else []
+    lines += [f"Channel Name: {channel}"] if channel else []
+    return Refusal(DAQmxErrors.INVALID_ATTRIBUTE_VALUE, "\n".join(lines))
+
+
+def number_of(request: Any, field: str) -> int:
+    """Return an enumerated field, which travels as a name or as a raw number."""
+    return int(getattr(request, f"{field}_raw") or getattr(request, field))

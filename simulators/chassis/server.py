@@ -18,12 +18,27 @@ import grpc
 
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.records.source import Source
+from jointbench.simulators.chassis.calls.scripted_faults import ScriptedFaults
+from jointbench.simulators.chassis.calls.service import ChassisService
 from jointbench.simulators.chassis.faults import Fault, FaultKind
-from jointbench.simulators.chassis.inventory import CURRENTS, Inventory
+from jointbench.simulators.chassis.limits import Limits
+from jointbench.simulators.chassis.modules.inventory import (
+    DEFAULT_MODULE,
+    Inventory,
+    changed,
+    devices,
+    module_list,
+)
+from jointbench.simulators.chassis.modules.lookup import described
 from jointbench.simulators.chassis.protocol import add_servicer
-from jointbench.simulators.chassis.reading import ReadingService
 from jointbench.simulators.chassis.specimen import StreamedSpecimen
-from jointbench.simulators.chassis.task import Pace, SimulatedTask
+from jointbench.simulators.chassis.tasks.acquisition import Pace
+from jointbench.simulators.chassis.tasks.signals import (
+    Signals,
+    SineSignals,
+    SpecimenSignals,
+)
+from jointbench.simulators.chassis.tasks.task import SharedBench, SimulatedTask
 from jointbench.simulators.plates.plates_bench import (
     LivePlates,
     PlannedStroke,
@@ -32,12 +47,15 @@ from jointbench.simulators.plates.plates_bench import (
 )
 
 HAND_SERVICE = "jointbench.Hand"
-# Every open event stream of a client occupies a worker.
-_WORKERS = 24
+LOOPBACK = "127.0.0.1"
+# Requests are short, answers are not.
 _OPTIONS = (
-    ("grpc.max_receive_message_length", -1),
     ("grpc.max_send_message_length", -1),
     ("grpc.so_reuseport", 0),
+    ("grpc.keepalive_time_ms", 10_000),
+    ("grpc.keepalive_timeout_ms", 5_000),
+    ("grpc.http2.min_ping_interval_without_data_ms", 5_000),
+    ("grpc.keepalive_permit_without_calls", 1),
 )
 
 
@@ -47,24 +65,36 @@ class ChassisSetup:
 
     Attributes:
         bench: specimen, operator and sensors; or a source of samples, whose channels
-            are connected in order.
+            are connected in order; or None for a sine in the limits of each channel,
+            as NI's own simulated devices give.
         speed: seconds of signal per second; infinite for as fast as it is read.
-        modules: of four inputs each.
-        top_rate: highest samples per second and channel [Hz].
-        analogue_trigger: whether the modules can trigger on a signal.
-        currents: available for IEPE sensors [A]; empty for none.
+        module: type of the modules, ``"9234"``; or of each, ``"9234,9250"``.
+        modules: number of modules of one type.
+        name: of the chassis.
+        names: of the modules, instead of those made from the name of the chassis.
+        top_rate: of an external clock: highest samples per second and channel [Hz];
+            None for the clock of the modules.
+        analogue_trigger: whether modules that can trigger on a signal do so.
+        currents: for IEPE sensors instead of those of the modules [A].
         faults: script of faults.
         port: to listen on; 0 for any free one.
+        host: address to listen on; the loopback interface unless stated.
+        limits: of each client.
     """
 
-    bench: PlatesBench | Source = field(default_factory=PlatesBench)
+    bench: PlatesBench | Source | None = field(default_factory=PlatesBench)
     speed: float = 1.0
+    module: str = DEFAULT_MODULE
     modules: int = 1
-    top_rate: float = 51_200.0
+    name: str = "cDAQSim1"
+    names: tuple[str, ...] = ()
+    top_rate: float | None = None
     analogue_trigger: bool = True
-    currents: tuple[float, ...] = CURRENTS
+    currents: tuple[float, ...] | None = None
     faults: tuple[Fault, ...] = ()
     port: int = 0
+    host: str = LOOPBACK
+    limits: Limits = field(default_factory=Limits)
 
 
 class SimulatedChassis:
@@ -73,23 +103,22 @@ class SimulatedChassis:
     def __init__(self, setup: ChassisSetup) -> None:
         self._setup = setup
         self._pace = Pace(speed=setup.speed)
-        self._live: LivePlates | StreamedSpecimen = (
-            LivePlates(setup.bench)
-            if isinstance(setup.bench, PlatesBench)
-            else StreamedSpecimen(setup.bench)
+        self._live = _specimen(setup.bench)
+        self._signals: Signals = (
+            SineSignals() if self._live is None else SpecimenSignals(self._live)
         )
         self._faults = list(setup.faults)
         self._delivered = 0
         self._lock = threading.Lock()
         self._server: grpc.Server | None = None
-        self._service: ReadingService | None = None
+        self._service: ChassisService | None = None
         self._restart: threading.Timer | None = None
         self.port = setup.port
 
     @property
     def address(self) -> str:
         """Host and port, as given to a client."""
-        return f"127.0.0.1:{self.port}"
+        return f"{self._setup.host}:{self.port}"
 
     @property
     def history(self) -> tuple[PlannedStroke, ...]:
@@ -105,7 +134,11 @@ class SimulatedChassis:
     @property
     def sensors(self) -> tuple[PluggedSensor, ...]:
         """Sensors at the first inputs."""
-        return self._live.sensors
+        return () if self._live is None else self._live.sensors
+
+    def described(self) -> list[str]:
+        """Return a line for each module: its inputs, range, currents and rates."""
+        return [described(each) for each in devices(_inventory(self._setup, ()))]
 
     def __enter__(self) -> "SimulatedChassis":
         """Start listening."""
@@ -127,7 +160,8 @@ class SimulatedChassis:
         Raises:
             InstrumentError: the port is taken.
         """
-        server = grpc.server(ThreadPoolExecutor(_WORKERS), options=_OPTIONS)
+        workers = ThreadPoolExecutor(self._setup.limits.workers)
+        server = grpc.server(workers, options=_OPTIONS)
         try:
             self.port = server.add_insecure_port(self.address)
         except RuntimeError as error:
@@ -172,21 +206,36 @@ class SimulatedChassis:
     def _remember(self) -> None:
         """Keep the delivered samples and applied faults over a restart."""
         if self._service is not None:
-            self._delivered = self._service.delivered
-            self._faults = [f for f in self._faults if f.at > self._service.reached]
+            script = self._service.faults
+            self._delivered = script.delivered
+            self._faults = [f for f in self._faults if f.at > script.reached]
 
-    def _new_service(self) -> ReadingService:
+    def _new_service(self) -> ChassisService:
         setup = self._setup
-        service = ReadingService(
-            _inventory(setup, self._live.sensors),
-            lambda name: SimulatedTask(name, self._pace, self._live.volts),
-            begin=self._live.begin,
-            pace=self._pace,
-            faults=tuple(f for f in self._faults if f.kind not in _FROM_THE_START),
+        inventory = _inventory(setup, self.sensors)
+        bench = SharedBench(self._pace, self._signals, devices(inventory))
+        script = ScriptedFaults(
+            tuple(f for f in self._faults if f.kind not in _FROM_THE_START),
+            open_inputs=bench.open_inputs,
             drop=self.drop,
         )
-        service.delivered = self._delivered
-        return service
+        script.delivered = self._delivered
+        return ChassisService(
+            inventory,
+            lambda name: SimulatedTask(name, bench),
+            faults=script,
+            limits=setup.limits,
+        )
+
+
+def _specimen(
+    bench: PlatesBench | Source | None,
+) -> LivePlates | StreamedSpecimen | None:
+    if bench is None:
+        return None
+    if isinstance(bench, PlatesBench):
+        return LivePlates(bench)
+    return StreamedSpecimen(bench)
 
 
 _FROM_THE_START = (FaultKind.REFUSE, FaultKind.WRONG_TEDS, FaultKind.TEDS_ERROR)
@@ -197,10 +246,14 @@ def _inventory(setup: ChassisSetup, sensors: tuple[PluggedSensor, ...]) -> Inven
         return frozenset(int(f.value) for f in setup.faults if f.kind is kind)
 
     return Inventory(
-        modules=setup.modules,
-        top_rate=setup.top_rate,
-        analogue_trigger=setup.analogue_trigger,
-        currents=setup.currents,
+        name=setup.name,
+        names=setup.names,
+        modules=changed(
+            module_list(setup.module, setup.modules),
+            top_rate=setup.top_rate,
+            analogue_trigger=setup.analogue_trigger,
+            currents=setup.currents,
+        ),
         teds_error=next((-f for f in inputs(FaultKind.TEDS_ERROR)), 0),
         sensors=sensors,
         missing=inputs(FaultKind.REFUSE),
@@ -214,7 +267,7 @@ def _clock_handler(pace: Pace) -> grpc.RpcMethodHandler:
     return grpc.unary_unary_rpc_method_handler(lambda request, context: clock)
 
 
-def _strike_handler(live: LivePlates, service: ReadingService) -> grpc.RpcMethodHandler:
+def _strike_handler(live: LivePlates, service: ChassisService) -> grpc.RpcMethodHandler:
     def strike(request: bytes, context: grpc.ServicerContext) -> bytes:
         changes: dict[str, Any] = json.loads(request)
         try:

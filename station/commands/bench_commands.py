@@ -154,17 +154,27 @@ def simulate_command(
         str,
         typer.Argument(metavar="URL", help="Simulated bench, its speed and its port."),
     ] = "sim:plates?speed=1&interval=2&port=31763",
+    module: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME,...",
+            help="Modules: 9234, 9231, 9250, 9230, 4431, 9215 or 6363.",
+        ),
+    ] = "",
     debug: Debug = False,
 ) -> None:
-    """Serve a simulated NI chassis over gRPC.
+    """Serve simulated NI devices over gRPC.
 
-    Any program that uses nidaqmx over gRPC can connect to it. The parameter
+    Any program that uses nidaqmx over gRPC can connect to them. The parameter
     'interval' is the time between hits [s], 'speed' the simulated time per real time
-    [-], 'port' the TCP port. Stop the server with Ctrl-C.
+    [-], 'port' the TCP port. 'sim:sine' has a sine at every input instead of a
+    specimen. Stop the server with Ctrl-C.
 
     Examples:
         jointbench simulate 'sim:plates?interval=2&port=31763'
+
+        jointbench simulate 'sim:sine?port=31763' --module 9234,9215
     """
     from jointbench.station.commands.simulate import run_simulate
 
-    run_simulate(bench)
+    run_simulate(bench, module)

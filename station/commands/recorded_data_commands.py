@@ -45,6 +45,12 @@ from jointbench.station.commands.shared_options.output_options import (
     SessionOut,
     Universal,
 )
+from jointbench.station.commands.shared_options.texture_options import (
+    Iso,
+    Robust,
+    ScaleErrors,
+    SettingClassName,
+)
 
 
 def import_command(
@@ -161,24 +167,31 @@ def surface_command(
     pool: Pool = False,
     weierstrass: WaveRatio = None,
     structure_map: StructureMapFile = None,
+    iso: Iso = False,
+    setting_class: SettingClassName = None,
+    robust: Robust = False,
+    scale_errors: ScaleErrors = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
     """Fit the fractal parameters D and G of measured surfaces.
 
     D [-] and G [m] come from the structure function. A surface without a scaling
-    range has no D and G.
+    range has no D and G. With --iso: the roughness parameters of ISO 21920 and
+    ISO 25178 as well.
 
     Examples:
         jointbench surface surface-a.csv surface-b.csv --json surfaces.json
         jointbench surface trace.txt --columns 'x:um,z:um' --form 2 --outliers 6
         jointbench surface a.csv b.csv c.csv --filter '2.5 um:0.8 mm' --pool
+        jointbench surface trace.csv --iso --scale-errors '1 %:0.5 %'
     """
     from jointbench.station.commands.surface_command import run_surface
     from jointbench.station.pipeline.surface_options import (
         surface_options,
         surface_treatment,
     )
+    from jointbench.station.roughness.texture_request import requested_texture
 
     options = surface_options(
         surface_treatment(form, outliers, waves, direction),
@@ -186,6 +199,9 @@ def surface_command(
         directions=directions,
         weierstrass=weierstrass,
         structure_map=structure_map,
+        texture=requested_texture(
+            (setting_class, waves, scale_errors), iso=iso, form=form, robust=robust
+        ),
     )
     run_surface(files, columns=columns, json_target=json, options=options)
 

@@ -7,23 +7,29 @@ from jointbench.simulators.chassis.server import SimulatedChassis
 from jointbench.station.screen.terminal import console
 
 
-def run_simulate(url: str) -> None:
+def run_simulate(url: str, module: str = "") -> None:
     """Serve a simulated chassis until interrupted.
 
     Args:
         url: simulated bench, for example ``sim:plates?interval=2&port=31763``.
+        module: type of its modules, empty for that of the URL.
 
     Raises:
-        UsageError: the URL is not that of a simulated chassis.
+        UsageError: the URL is not that of a simulated chassis, or the module is not
+            simulated.
         InstrumentError: the port is taken.
     """
     if not is_plates_url(url):
         raise UsageError(
             f"{url!r} is not a simulated chassis; write 'sim:plates?port=31763'"
         )
+    if module:
+        url += f"{'&' if '?' in url else '?'}module={module}"
     screen = console()
     with SimulatedChassis(chassis_from_url(url)) as server:
         screen.print(f"serving NI-DAQmx at {server.address}; stop with Ctrl-C")
+        for line in server.described():
+            screen.print(f"  {line}", soft_wrap=True)
         screen.print(
             f"example: jointbench measure plan.toml --out session.h5 --source "
             f"ni+grpc://{server.address}",

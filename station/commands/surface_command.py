@@ -34,7 +34,10 @@ from jointbench.station.pipeline.surface_stages import (
     chain_cautions,
     with_band,
     with_remedy,
+    with_texture,
 )
+from jointbench.station.roughness.texture_screen import measured_of, show_textures
+from jointbench.station.roughness.texture_words import pooled_json
 from jointbench.station.screen.band_limited_words import (
     COLUMNS,
     TITLE,
@@ -69,6 +72,7 @@ def run_surface(
         with working(f"fitting {surface.name}"):
             fitted = with_band(analyse_surface(surface, options), options)
             chain = with_remedy(fitted, surface, options)
+            chain = with_texture(chain, surface, options)
         if options.structure_map is not None:
             write_structure_map(chain.surface, options.structure_map)
         chains.append(chain)
@@ -104,6 +108,7 @@ def show_surfaces(
         for line in chain.beside.lines:
             screen.print(f"  {chain.surface.name}: {line}", markup=False)
     _show_bands(screen, chains, pooled)
+    show_textures(screen, chains, pool=pooled is not None)
     if pooled is not None:
         for line in (pooled.fit.reason, *pooled.beside.lines):
             screen.print(f"  {pooled.structure.name}: {line}", markup=False)
@@ -147,7 +152,14 @@ def _pooled_json(pooled: Pooled, chains: Sequence[SurfaceChain]) -> dict[str, ob
         "profiles": [chain.surface.name for chain in chains],
         "band_limited": band_json(pooled.band, None),
         **dict(pooled.beside.keys),
+        **_pooled_texture(chains),
     }
+
+
+def _pooled_texture(chains: Sequence[SurfaceChain]) -> dict[str, object]:
+    """Return the mean standard parameters of profiles that have them."""
+    several = measured_of(chains)
+    return {"texture": pooled_json(several)} if len(several) > 1 else {}
 
 
 def _numbers(fit: FractalFit) -> tuple[str, str, str, str]:

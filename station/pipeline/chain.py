@@ -40,6 +40,7 @@ from jointbench.signal.kalman.stage_provenance import stage_gain_of
 from jointbench.signal.modal.data_limits import block_words
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
+from jointbench.signal.modal.response_harmonics import without_growing_harmonics
 from jointbench.station.pipeline.judge_again import (
     FoundHits,
     StoredHits,
@@ -192,9 +193,21 @@ def modal_chain(
     at = at_words(preload)
     measured = _frf_stage(judged, settings, run, at)
     result = _modes_stage(measured.frf, settings, run, at)
+    result = _without_harmonics(result, measured)
     filled = _fill_stage(judged, result, settings, run, at)
     whole = _chain_of(judged, measured, result)
     return _amplitude_stage(filled[0] if filled else whole, run, at)
+
+
+def _without_harmonics(result: ModalResult, measured: MeasuredFrf) -> ModalResult:
+    """Leave out what grows with the level of the hits as a harmonic does."""
+    model, remarks = without_growing_harmonics(
+        result.model, result.remarks, measured.frf, measured.levels.linearity
+    )
+    if remarks == result.remarks:
+        return result
+    gain = stage_gain_of(measured.frf.provenance, model.natural_frequency)
+    return replace(result, model=model, stage_gain=gain, remarks=remarks)
 
 
 def _chain_of(

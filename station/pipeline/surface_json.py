@@ -10,6 +10,7 @@ from jointbench.signal.surface.levelling import level
 from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.station.pipeline.roughness_words import roughness_json
 from jointbench.station.pipeline.surface_stages import SurfaceChain
+from jointbench.station.roughness.texture_words import answer_json
 from jointbench.station.screen.band_limited_words import band_json
 
 
@@ -21,8 +22,14 @@ def surface_json(chain: SurfaceChain) -> dict[str, object]:
         "remedy": chain.remedy,
         "band_limited": band_json(chain.band, chain.no_band),
         "spectrum": spectrum_json(chain.surface),
+        **_texture_json(chain),
         **dict(chain.beside.keys),
     }
+
+
+def _texture_json(chain: SurfaceChain) -> dict[str, object]:
+    """Return the standard parameters where they were asked for."""
+    return {} if chain.texture is None else {"texture": answer_json(chain.texture)}
 
 
 def fit_json(name: str, fit: FractalFit, said: Sequence[str]) -> dict[str, object]:

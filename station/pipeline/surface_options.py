@@ -18,6 +18,7 @@ from jointbench.signal.surface.structure_function import (
 )
 from jointbench.signal.surface.structure_map import isotropy
 from jointbench.signal.surface.surface_treatment import UNTREATED, SurfaceTreatment
+from jointbench.station.roughness.texture_request import TextureRequest
 from jointbench.station.screen.value_text import engineering, with_sd
 
 _AT_THE_END = 1e-3
@@ -35,6 +36,7 @@ class SurfaceOptions:
         weierstrass: frequency ratio of a Weierstrass-Mandelbrot profile to fit beside
             [-]; None for no such fit.
         structure_map: file for S at all lags of one surface; None for none.
+        texture: standard parameters to compute; None for none.
     """
 
     treatment: SurfaceTreatment = UNTREATED
@@ -42,6 +44,7 @@ class SurfaceOptions:
     directions: bool = False
     weierstrass: float | None = None
     structure_map: Path | None = None
+    texture: TextureRequest | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +101,12 @@ def surface_options(
     directions: bool,
     weierstrass: float | None,
     structure_map: Path | None = None,
+    texture: TextureRequest | None = None,
 ) -> SurfaceOptions:
     """Return the options as typed."""
-    return SurfaceOptions(treatment, pool, directions, weierstrass, structure_map)
+    return SurfaceOptions(
+        treatment, pool, directions, weierstrass, structure_map, texture
+    )
 
 
 def require_suited(surfaces: Sequence[Surface], options: SurfaceOptions) -> None:

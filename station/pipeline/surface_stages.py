@@ -10,6 +10,7 @@ from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import BandLimitedFit
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
+from jointbench.signal.surface.form_removal import mask_outliers
 from jointbench.signal.surface.structure_function import StructureFunction
 from jointbench.signal.surface.surface_treatment import (
     outside_filters,
@@ -26,6 +27,10 @@ from jointbench.station.pipeline.surface_options import (
     beside_the_fit,
 )
 from jointbench.station.pipeline.surface_remedies import remedy
+from jointbench.station.roughness.texture_request import (
+    TextureAnswer,
+    texture_answer,
+)
 from jointbench.station.screen.band_limited_words import qualified
 
 
@@ -42,6 +47,7 @@ class SurfaceChain:
             where none was looked for.
         band: the band-limited surface; None where none was fitted.
         no_band: why none was fitted.
+        texture: standard parameters; None where they are not asked for.
     """
 
     surface: Surface
@@ -51,6 +57,7 @@ class SurfaceChain:
     remedy: str | None = None
     band: BandLimitedFit | None = None
     no_band: str | None = None
+    texture: TextureAnswer | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,6 +88,17 @@ def with_remedy(
 ) -> SurfaceChain:
     """Return a chain that names what would help a surface without a scaling range."""
     return replace(chain, remedy=remedy(given, chain.fit, asked.treatment))
+
+
+def with_texture(
+    chain: SurfaceChain, given: Surface, asked: SurfaceOptions
+) -> SurfaceChain:
+    """Return a chain with the standard parameters of the surface as measured."""
+    if asked.texture is None:
+        return chain
+    outliers = asked.treatment.outliers
+    heights = given if outliers is None else mask_outliers(given, limit=outliers)
+    return replace(chain, texture=texture_answer(heights, asked.texture))
 
 
 def with_band(chain: SurfaceChain, asked: SurfaceOptions) -> SurfaceChain:

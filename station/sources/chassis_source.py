@@ -13,7 +13,8 @@ from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.ni.stream import Block, NiStream, StreamSettings
 from jointbench.acquisition.records.recordings import Channel
 from jointbench.acquisition.records.source import Run, Source
-from jointbench.simulators.chassis.inventory import INPUTS_PER_MODULE
+from jointbench.simulators.chassis.modules.inventory import DEFAULT_MODULE
+from jointbench.simulators.chassis.modules.module_type import module_type
 from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.chassis.specimen import INPUT_RANGE, plugged
 
@@ -65,7 +66,7 @@ class ChassisSource:
         setup = ChassisSetup(
             bench=self.source,
             speed=math.inf,
-            modules=-(-len(self.channels) // INPUTS_PER_MODULE),
+            modules=-(-len(self.channels) // _inputs()),
             top_rate=rate,
         )
         settings = StreamSettings(rate, max(1, round(BLOCK * rate)))
@@ -157,6 +158,11 @@ def _table(channels: tuple[Channel, ...]) -> tuple[Sensor, ...]:
     )
 
 
+def _inputs() -> int:
+    """Return the inputs of a module."""
+    return module_type(DEFAULT_MODULE).inputs
+
+
 def _input(number: int) -> str:
-    module, own = divmod(number, INPUTS_PER_MODULE)
+    module, own = divmod(number, _inputs())
     return f"cDAQSim1Mod{module + 1}/ai{own}"

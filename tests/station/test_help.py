@@ -25,7 +25,7 @@ GROUP = typer.main.get_command(app)
 assert isinstance(GROUP, TyperGroup)
 NAMES = list(GROUP.commands)
 QUANTITIES = {"QUANTITY", "NUMBER", "LOW:HIGH", "FREQUENCY", "ANGLE", "LIMIT", "GAMMA"}
-QUANTITIES |= {"NAME:FROM:TO:N", "ROLE:UNIT,..."}
+QUANTITIES |= {"NAME:FROM:TO:N", "ROLE:UNIT,...", "HEIGHT:PITCH"}
 OTHERS = {"PATH", "FOLDER", "URL", "NAME", "NAME,...", "TERM,...", "N"}
 KINDS = ("force", "length", "mass", "pressure", "ratio", "frequency", "stiffness")
 KINDS += ("torque",)
@@ -211,10 +211,11 @@ def test_version_imports_no_library() -> None:
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 
 
-def test_the_package_root_stays_a_namespace() -> None:
-    """An ``__init__.py`` there would cost time at each import and hide other parts."""
+def test_the_package_root_holds_the_library_and_nothing_else() -> None:
+    """Its import loads no library; all else belongs to a folder of its own."""
     root = Path(__file__).parents[2] / "library"
     assert {one.name for one in root.iterdir() if one.is_file()} == {
+        "__init__.py",
         "__main__.py",
         "py.typed",
     }

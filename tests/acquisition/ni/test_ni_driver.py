@@ -124,7 +124,7 @@ def test_a_hit_comes_in_newtons_with_its_peak() -> None:
 
 def test_a_wrong_sensitivity_gives_wrong_newtons() -> None:
     """The chassis delivers volts; what the table believes scales them."""
-    half = replace(HAMMER, axes=(Axis("cDAQSim1Mod1/ai0", "+z", 4.5e-3),))
+    half = replace(HAMMER, axes=(Axis("cDAQSim1Mod1/ai0", "+z", 4.5e-3),), range=1100.0)
     peaks = []
     for hammer in (HAMMER, half):
         with chassis() as client:

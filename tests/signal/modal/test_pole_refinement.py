@@ -29,6 +29,21 @@ def test_poles_a_tenth_of_a_width_off_are_brought_back(
     assert found.converged.all()
 
 
+def test_a_rough_refinement_ends_within_a_standard_deviation(
+    structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
+) -> None:
+    """From 1 % of a half-width off, which is more than three."""
+    truth = structure((200.0, 600.0), (0.01, 0.02), (1.0, -0.5))
+    lines = lines_of(noisy_frf(truth, LINES, noise=1e-3, seed=5), ALL)
+    start = truth.poles - 0.01 * truth.poles.real * (1.0 + 1.0j)
+    noise = roughness(lines.response)
+    whole = refine_poles(lines, start, noise)
+    rough = refine_poles(lines, start, noise, rough=True)
+    sd = np.sqrt(np.trace(whole.covariance, axis1=1, axis2=2))
+    assert np.all(np.abs(start - whole.pole) > 3.0 * sd)
+    assert np.all(np.abs(rough.pole - whole.pole) < 0.3 * sd)
+
+
 def test_the_covariance_is_that_of_repeated_measurements(
     structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
 ) -> None:

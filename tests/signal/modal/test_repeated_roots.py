@@ -6,7 +6,15 @@ import pytest
 from hammered_structures import Bench, Strike, Structure, square_membrane, strike
 
 from jointbench.signal.frf.frf import Frf, FrfKind, estimate_frf
+from jointbench.signal.modal.frf_lines import lines_of
+from jointbench.signal.modal.mode_selection import fit_modes
 from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
+from jointbench.signal.modal.residual_search.second_modes import (
+    FrfSides,
+    peak_members,
+    second_modes,
+    without_third,
+)
 
 SETTINGS = ModalSettings(band=(15.0, 150.0), highest_order=20)
 LINES = np.arange(0.0, 200.0, 0.25)
@@ -72,6 +80,22 @@ def test_two_pairs_within_a_width_are_four_modes() -> None:
     model = identify_modes(Frf(LINES, noisy, FrfKind.ACCELERANCE), SETTINGS).model
     error = model.natural_frequency - np.abs(poles) / (2.0 * np.pi)
     assert np.all(np.abs(error) < np.minimum(4.0 * model.frequency_sd, 0.1))
+
+
+@pytest.mark.parametrize(("away", "gone"), [(0.06, [1]), (0.3, [])])
+def test_a_third_mode_at_the_pole_of_a_pair_goes(away: float, gone: list[int]) -> None:
+    """Two references cannot show it: left out within a tenth of a half-power width."""
+    inside = (LINES > 15.0) & (LINES < 150.0)
+    lines = lines_of(pair_of(0.5), inside)
+    poles = np.array([POLE, POLE - 1j * away * POLE.real])
+    fitted = fit_modes(lines, poles, None, held=np.ones(2, bool), refine=False)
+    sides = FrfSides(lines, fitted.poles, fitted.fit, fitted.variance, None, 6, 2)
+    found = second_modes(sides, peak_members(lines, fitted.poles.pole, 0))
+    alone = without_third(sides, found)
+    assert found.members.tolist() == [0, 1]
+    assert alone.replaced.tolist() == gone
+    assert alone.accepted == bool(gone)
+    assert alone.left < 1.05
 
 
 def test_a_single_mode_stays_one_without_a_remark() -> None:
