@@ -72,7 +72,7 @@ class Run:
         program: CPU of the measuring program [% of a core].
         recorder_mb: its memory in the second minute (or first look) and at the end.
         program_mb: the same of the measuring program.
-        in_file: samples per channel in the finished file.
+        in_file: samples per channel in the finished file, None where not counted.
         load: of the computer over one minute at the end [processes].
     """
 
@@ -91,7 +91,7 @@ class Run:
     program: float
     recorder_mb: tuple[float, float]
     program_mb: tuple[float, float]
-    in_file: int
+    in_file: int | None
     load: str
 
 
@@ -249,7 +249,7 @@ def row(run: Run) -> str:
         f"{run.lost} | {run.gaps} ({run.stated}) | {run.recorder:.1f} | "
         f"{run.program:.1f} | {run.recorder_mb[0]:.0f} to {run.recorder_mb[1]:.0f} | "
         f"{run.program_mb[0]:.0f} to {run.program_mb[1]:.0f} | "
-        f"{run.in_file} |"
+        f"{'not counted' if run.in_file is None else run.in_file} |"
     )
 
 
