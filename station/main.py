@@ -16,6 +16,7 @@ from jointbench.station.commands.bench_commands import (
     measure_command,
     record_command,
     simulate_command,
+    watch_command,
 )
 from jointbench.station.commands.contact_command import (
     contact_command,
@@ -62,6 +63,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "demo": demo_command,
         "measure": measure_command,
         "record": record_command,
+        "watch": watch_command,
         "calibrate": calibrate_command,
         "profile": profile_command,
         "simulate": simulate_command,

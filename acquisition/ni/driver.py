@@ -50,6 +50,8 @@ from jointbench.acquisition.ni.sensors import (
 from jointbench.acquisition.records.recordings import Quantity
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
+_STROKE = 5.0  # [s] for a stroke of a simulated bench; it is requested again
+_CONNECTION = 60.0  # [s] for the first answer of a server on a busy computer
 _OPTIONS = (
     ("grpc.max_receive_message_length", -1),
     ("grpc.max_send_message_length", -1),
@@ -170,19 +172,21 @@ class Chassis:
 
     def strike(self, request: bytes) -> bytes | None:
         """Request a stroke of a simulated bench; None for a real one."""
-        return self._ask_simulation("Strike", request)
+        return self._ask_simulation("Strike", request, _STROKE)
 
     def has_clock(self) -> bool:
         """Return whether samples arrive on time; some simulations wait for a reader."""
-        return self._ask_simulation("Clock", b"") != b"none"
+        return self._ask_simulation("Clock", b"", _CONNECTION) != b"none"
 
-    def _ask_simulation(self, what: str, request: bytes) -> bytes | None:
+    def _ask_simulation(
+        self, what: str, request: bytes, timeout: float
+    ) -> bytes | None:
         """Return the answer of a simulated bench; None for a real one."""
         if self._channel is None:
             return None
         call = self._channel.unary_unary(f"/jointbench.Hand/{what}")
         try:
-            answer: bytes = call(request, timeout=5.0)
+            answer: bytes = call(request, timeout=timeout)
         except grpc.RpcError as error:
             code = error.code()
             if code is grpc.StatusCode.UNIMPLEMENTED:

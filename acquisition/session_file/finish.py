@@ -16,6 +16,8 @@ from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.disk_room import DiskRoom
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
+from jointbench.acquisition.file_access.netcdf_write import write_variable
+from jointbench.acquisition.session_file.follow_log import EVENTS, LOG
 from jointbench.acquisition.session_file.live_read import (
     LiveContent,
     LiveSpan,
@@ -108,8 +110,22 @@ def _copy(source: Path, live: h5py.File, file: h5py.File) -> Finished:
                 pieces=_pieces(source, live, span, room),
             )
         write_provenance(file, session)
+        _write_log(live, file)
         file.flush()
     return _account(content, sum(len(r.hits) for r in session.recordings))
+
+
+def _write_log(live: h5py.File, file: h5py.File) -> None:
+    """Keep the log as it was written, for a replay."""
+    values = live[LOG][...]
+    if values.size:
+        write_variable(
+            file.create_group(EVENTS),
+            LOG,
+            values,
+            ("byte",),
+            long_name="events, a line each: CRC-32 and JSON",
+        )
 
 
 def _pieces(

@@ -97,7 +97,7 @@ def read_live(file: h5py.File) -> LiveContent:
     return LiveContent(
         meta=meta,
         spans=tuple(_spans(index, good)),
-        log=tuple(_entries(file["log"][...].tobytes())),
+        log=tuple(log_entries(file["log"][...].tobytes())),
         damaged=good.count(False),
     )
 
@@ -136,8 +136,15 @@ def _spans(index: IntArray, good: list[bool]) -> Iterator[LiveSpan]:
         yield span
 
 
-def _entries(text: bytes) -> Iterator[dict[str, Any]]:
-    """Yield the complete lines; the last one of a killed session may be cut."""
+def log_entries(text: bytes) -> Iterator[dict[str, Any]]:
+    """Yield the entries of a log; the last line of a killed session may be cut.
+
+    Args:
+        text: of the log, with a checksum before each line.
+
+    Raises:
+        HostileFile: it has more entries than any recording.
+    """
     if text.count(b"\n") > MAX_ROWS or text.count(b"[") > MAX_JSON:
         raise HostileFile("its log has more entries than any recording")
     for line in text.split(b"\n"):

@@ -33,6 +33,8 @@ from jointbench.acquisition.session_file.live_read import (
 )
 
 _SESSION_TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
+_NO_STEPS = {"hit", "verdict", "run", "ask", "condition", "message", None}
+"""Entries that are part of the recordings, or of the log alone."""
 _NUMBERS = (str, int, float, bool)
 
 
@@ -243,7 +245,7 @@ def _provenance(content: LiveContent) -> Provenance:
     steps = [
         Step(str(entry["kind"]), tuple(_plain(entry, tuple(entry)).items()))
         for entry in content.log
-        if entry.get("kind") not in {"hit", "verdict", "run", None}
+        if entry.get("kind") not in _NO_STEPS
     ]
     if not is_finished(content):
         steps.append(

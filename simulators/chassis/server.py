@@ -129,7 +129,9 @@ class SimulatedChassis:
     @property
     def delivered(self) -> int:
         """Samples per channel delivered over all streams."""
-        return self._delivered if self._service is None else self._service.delivered
+        return (
+            self._delivered if self._service is None else self._service.faults.delivered
+        )
 
     @property
     def sensors(self) -> tuple[PluggedSensor, ...]:

@@ -88,6 +88,34 @@ def record_command(
     return 0 if written.whole else EXIT_QUALITY
 
 
+def watch_command(
+    session: Annotated[
+        Path,
+        typer.Argument(
+            metavar="SESSION", help="Session that is being recorded, or was recorded."
+        ),
+    ],
+    once: Annotated[
+        bool, typer.Option("--once", help="Show the state once, and leave.")
+    ] = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Follow a session in a second terminal while it is recorded.
+
+    The command shows what was measured so far, then each event as it comes. It reads
+    the session file only: it may start late and stop at any time. A finished session
+    is shown as it ended.
+
+    Examples:
+        jointbench watch session.h5
+        jointbench watch session.h5 --once --json -
+    """
+    from jointbench.station.measure.watch_session import run_watch
+
+    run_watch(session, once=once, json_target=json)
+
+
 def calibrate_command(
     session: Annotated[
         Path,

@@ -36,6 +36,7 @@ from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.bench_screen import watching
 from jointbench.station.measure.bolt_torques import BoltWatch
 from jointbench.station.measure.chassis import OpenChassis, open_chassis
+from jointbench.station.measure.logged_messages import LoggedMessages
 from jointbench.station.measure.observer import Watcher
 from jointbench.station.measure.plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure.session_engine import MeasureSession
@@ -43,6 +44,8 @@ from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.session_events.flow_events import Warned
 from jointbench.station.sources.serial_port import line_name
 
 
@@ -191,7 +194,8 @@ def _record(
     out: Path,
     running: tuple[RecorderProcess, Watcher, tuple[str, ...], Record],
 ) -> None:
-    recorder, watcher, warnings, record = running
+    recorder, screen, warnings, record = running
+    watcher = LoggedMessages(screen, recorder)
     channels = table_channels(plan.sensors)
     with _torque_tester(plan) as bolts:
         recorder.begin(out, _meta(plan, opened, channels, recorder.sample_rate))
@@ -210,7 +214,7 @@ def _record(
         try:
             watcher.begin(channels, recorder.sample_rate)
             for words in warnings:
-                recorder.log({"kind": "warning", "words": words})
+                recorder.log(to_entry(Warned(words)))
                 watcher.say(f"warning: {words}")
             session.run()
         except KeyboardInterrupt:

@@ -22,6 +22,8 @@ from jointbench.acquisition.serial_lines.serial_instrument import (
 from jointbench.station.measure.observer import Command, Watcher
 from jointbench.station.measure.session_record import Record
 from jointbench.station.schemas.plan_model import TorqueTable
+from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.session_events.hit_events import BoltRead
 
 BEGUN = 0.3
 """Share of the target from which a bolt counts as being tightened [-]."""
@@ -244,11 +246,6 @@ def _believable(reading: Reading, most: float) -> Reading:
 def _entry(
     reading: Reading, number: int, target: float, *, kept: bool
 ) -> dict[str, object]:
-    return {
-        "kind": "bolt",
-        "bolt": number,
-        "target": target,
-        "torque": abs(reading.value),
-        "kept": kept,
-        "raw": reading.raw,
-    }
+    return to_entry(
+        BoltRead(number, target, abs(reading.value), kept=kept, raw=reading.raw)
+    )

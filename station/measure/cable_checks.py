@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.station.measure.observer import Watcher
+from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.session_events.flow_events import CableChanged
 
 LOOK_AT_CABLES = 1.0  # [s] of signal between looks at the sensor loops
 
@@ -39,7 +41,7 @@ class CableWatch:
             return False
         self.open = found
         words = ", ".join(found)
-        self.recorder.log({"kind": "cable", "channels": words or "all closed again"})
+        self.recorder.log(to_entry(CableChanged(words or "all closed again")))
         self.watcher.say(
             f"sensor loop open: {words}; hits wait until the cable is back"
             if found

@@ -6,6 +6,8 @@ from dataclasses import replace
 from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.plan import Condition, conditions
 from jointbench.station.measure.session_record import Record
+from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.session_events.flow_events import ConditionDone
 
 
 class Route:
@@ -46,6 +48,8 @@ class Route:
         """Leave the present condition for the next one."""
         if given_up:
             self._record.incomplete.append(self.condition.name)
+        done = ConditionDone(self.condition.name, given_up)
+        self._bench.recorder.log(to_entry(done))
         self._record.done += 1
 
     def back(self) -> None:

@@ -6,60 +6,59 @@ from jointbench.acquisition.records.recordings import Hit
 from jointbench.station.measure.bench_checks import Check
 from jointbench.station.measure.plan import Condition
 from jointbench.station.measure.trial_settings import Proposal
+from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.session_events.flow_events import RunBegun
+from jointbench.station.session_events.hit_events import (
+    CheckDone,
+    HitJudged,
+    SettingProposed,
+    VerdictChanged,
+)
 
 Entry = dict[str, object]
 
 
 def run_entry(condition: Condition, *, trial: bool) -> Entry:
     """Return the entry that begins a recording of its own."""
-    return {
-        "kind": "run",
-        "name": "trial" if trial else condition.name,
-        "purpose": "trial" if trial else "measurement",
-        "point": condition.point,
-        "torque": condition.torque
-        if condition.tightened is None
-        else condition.tightened,
-        "preload": condition.preload,
-        "level": condition.level,
-    }
+    torque = condition.torque if condition.tightened is None else condition.tightened
+    return to_entry(
+        RunBegun(
+            name="trial" if trial else condition.name,
+            purpose="trial" if trial else "measurement",
+            point=condition.point,
+            torque=torque,
+            preload=condition.preload,
+            level=condition.level,
+        )
+    )
 
 
 def hit_entry(hit: Hit, *, number: int, new: bool) -> Entry:
     """Return the entry of a hit, or of a verdict that replaces an earlier one."""
-    return {
-        "kind": "hit" if new else "verdict",
-        "number": number,
-        "start": hit.start,
-        "trigger": hit.trigger,
-        "stop": hit.stop,
-        "point": hit.point,
-        "peak_force": hit.peak_force,
-        "verdict": hit.verdict.value,
-        "measure": hit.measure,
-        "reason": hit.reason,
-    }
+    kind = HitJudged if new else VerdictChanged
+    return to_entry(
+        kind(
+            number=number,
+            start=hit.start,
+            trigger=hit.trigger,
+            stop=hit.stop,
+            point=hit.point,
+            peak_force=hit.peak_force,
+            verdict=hit.verdict.value,
+            measure=hit.measure,
+            reason=hit.reason,
+        )
+    )
 
 
 def setting_entry(proposal: Proposal) -> Entry:
     """Return the entry of a setting that trial hits proposed."""
-    return {
-        "kind": "setting",
-        "name": proposal.name,
-        "value": proposal.value,
-        "reason": proposal.reason,
-    }
+    return to_entry(SettingProposed(proposal.name, proposal.value, proposal.reason))
 
 
 def check_entry(check: Check) -> Entry:
     """Return the entry of a check on the part."""
-    return {
-        "kind": "check",
-        "name": check.name,
-        "value": check.value,
-        "limit": check.limit,
-        "passed": check.passed,
-    }
+    return to_entry(CheckDone(check.name, check.value, check.limit, check.passed))
 
 
 def gap_words(gap: StreamGap) -> str:

@@ -276,7 +276,10 @@ def test_a_session_finished_in_place_is_what_its_recording_read_as(
 def test_a_session_finished_piece_by_piece_is_the_file_that_is_written_whole(
     tmp_path: Path,
 ) -> None:
-    """Of several chunks, with a gap in between: layout and values are the same."""
+    """Of several chunks, with a gap in between: layout and values are the same.
+
+    The log of the recording is kept beside them, byte by byte.
+    """
     path = tmp_path / "s.h5"
     with LiveSession(path, META, channels=2, block=1000) as live:
         live.log({"kind": "run", "name": "one", "point": "1"})
@@ -294,13 +297,16 @@ def test_a_session_finished_piece_by_piece_is_the_file_that_is_written_whole(
         whole.visit(names.append)
         found: list[str] = []
         pieces.visit(found.append)
-        assert found == names
+        log = pieces["events/log"][...].tobytes()
+        assert [n for n in found if n.partition("/")[0] != "events"] == names
         for name in names:
             if isinstance(whole[name], h5py.Dataset):
                 assert pieces[name].dtype == whole[name].dtype
                 assert pieces[name].chunks == whole[name].chunks
                 np.testing.assert_array_equal(pieces[name][...], whole[name][...])
                 assert set(pieces[name].attrs) == set(whole[name].attrs)
+    with h5py.File(path, "r", swmr=True) as recording:
+        assert log == recording["log"][...].tobytes()
     # The room that was reserved while it was written is given back.
     whole_size = (tmp_path / "whole.h5").stat().st_size
     assert (tmp_path / "pieces.h5").stat().st_size < 1.1 * whole_size

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""Events as lines of text."""
+
+from jointbench.station.session_events.event_codec import Event
+from jointbench.station.session_events.flow_events import (
+    Asked,
+    CableChanged,
+    ConditionDone,
+    RunBegun,
+    Said,
+    SamplesMissing,
+    SessionEnded,
+    Warned,
+)
+from jointbench.station.session_events.hit_events import (
+    BoltRead,
+    CheckDone,
+    HitJudged,
+    SettingProposed,
+)
+
+
+def event_words(event: Event) -> str:
+    """Return an event in one line."""
+    return f"{event.kind}: {_words(event)}"
+
+
+def _words(event: Event) -> str:
+    match event:
+        case HitJudged():
+            verdict = event.verdict.replace("_", " ")
+            return (
+                f"{event.number + 1} at point {event.point} {verdict}: {event.reason}"
+            )
+        case SettingProposed(name=name, value=value, reason=reason):
+            return f"{name} {value:.4g}: {reason}"
+        case CheckDone(name=name, passed=passed, value=value, limit=limit):
+            word = "good" if passed else "LOOK AT IT"
+            return f"{name} {word}, {value:.3g} (limit {limit:g})"
+        case BoltRead(bolt=bolt, raw=raw, kept=kept):
+            return f"{bolt} {raw}{'' if kept else ', not kept'}"
+        case RunBegun(name=name):
+            return name
+        case Asked(name=name, done=done, planned=planned):
+            return f"{name} ({done} of {planned} conditions are done)"
+        case ConditionDone(name=name, given_up=given_up):
+            return f"{name} {'is given up' if given_up else 'is done'}"
+        case Said(words=words) | Warned(words=words):
+            return words
+        case CableChanged(channels=channels):
+            return channels
+        case SamplesMissing(what=what, samples=samples, words=words):
+            return f"{what}, {samples} samples missing ({words})"
+        case SessionEnded(interrupted=interrupted, reason=reason):
+            return " ".join(("interrupted" if interrupted else "regularly", reason))
+    return ""
