@@ -172,7 +172,7 @@ def test_a_wrong_request_is_said_before_the_reduction(
     def reduced(*_: object, **__: object) -> None:
         raise AssertionError("the structure was reduced")
 
-    where = "jointbench.station.commands.identify_structure_command.reduce_structure"
+    where = "jointbench.station.joints.identify_run.reduce_structure"
     monkeypatch.setattr(where, reduced)
     model = tmp_path / "block.toml"
     text = BLOCKS.replace("modes = 6\n", "") + line + "\n"
