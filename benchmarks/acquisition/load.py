@@ -66,7 +66,7 @@ class Run:
         stored: in the file.
         lost: by counter.
         gaps: in the stream.
-        stated: missing samples by the gaps in the log.
+        stated: missing samples by the gaps that the program had seen.
         hits: judged.
         recorder: CPU of the recording process [% of a core].
         program: CPU of the measuring program [% of a core].
@@ -265,9 +265,9 @@ def page(runs: list[Run]) -> str:
             "chassis that runs in real time in a process of its own. The computer has "
             "two cores; beside chassis and measurement so many other processes as "
             "stated compute without a pause. Lost samples are those that the device "
-            "counted minus those in its buffer minus those in the file. The missing "
-            "samples that the log of the file states are in brackets beside the gaps. "
-            "Memory is that after a minute and that at the end.",
+            "counted minus those in its buffer minus those in the file. In brackets "
+            "are the missing samples of the gaps that the program had seen when it was "
+            "stopped. Memory is that after a minute and that at the end.",
             "",
             "| channels x rate | signal [s] | other processes | load (1 min) | hits "
             "judged | device counter | in its buffer | stored | lost | gaps (stated) | "

@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.errors import BadData, NoHitFound
 from jointbench.acquisition.records.recordings import Channel, Hit, Recording, Verdict
 from jointbench.signal.frf.coherence_without import coherence_without, typical_coherence
-from jointbench.signal.frf.frf import Frf, average_spectra
+from jointbench.signal.frf.frf import Frf
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
     hit_spectra,
@@ -19,6 +19,7 @@ from jointbench.signal.hits.hit_spectra import (
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.live_hits import CutHit
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
+from jointbench.station.measure.running_sums import RunningSums
 
 _ELSEWHERE = 0.5  # a slender point is struck more softly than the others
 _ENOUGH = 3  # hits from which a single outlier can be recognised
@@ -79,6 +80,8 @@ class GrowingAverage:
         self._channels, self._rate = tuple(channels), sample_rate
         self._kept: dict[CutHit, _Transformed] = {}
         self._length = 0
+        self._sums: RunningSums | None = None
+        self._summed: dict[CutHit, HitSpectra] = {}
         self._last: tuple[tuple[CutHit, ...], Frf | None] = ((), None)
 
     def frf(self, accepted: Sequence[Accepted]) -> Frf | None:
@@ -107,7 +110,7 @@ class GrowingAverage:
         together = mean_coherence(self.frf(accepted))
         if together is None or together >= wanted:
             return None
-        without = coherence_without(self._spectra(accepted)[0])
+        without = coherence_without(self._spectra(accepted))
         position = int(np.argmax(without))
         if without[position] < wanted:
             return None
@@ -120,12 +123,33 @@ class GrowingAverage:
 
     def _averaged(self, accepted: Sequence[Accepted]) -> Frf | None:
         try:
-            return average_spectra(*self._spectra(accepted))
+            window = self._transform(accepted)
         except BadData:
             return None
+        return self._summed_up(window).frf()
 
-    def _spectra(self, accepted: Sequence[Accepted]) -> tuple[HitSpectra, HammerWindow]:
-        """Return the spectra of hits under the one window that serves them all.
+    def _summed_up(self, window: HammerWindow) -> RunningSums:
+        """Return the sums over the kept hits; only those that changed are touched."""
+        wanted = {c: h.spectra for c, h in self._kept.items() if h.spectra is not None}
+        sums, summed = self._sums, self._summed
+        # Under another window or length each hit has other spectra.
+        same = all(wanted.get(cut, own) is own for cut, own in summed.items())
+        same &= not summed.keys().isdisjoint(wanted)
+        if sums is None or sums.window != window or not same:
+            first, summed = next(iter(wanted)), {}
+            sums = RunningSums(wanted[first], window)
+            summed[first] = wanted[first]
+        for cut in [cut for cut in summed if cut not in wanted]:
+            sums.take_out(summed.pop(cut))
+        for cut, own in wanted.items():
+            if cut not in summed:
+                sums.add(own)
+                summed[cut] = own
+        self._sums, self._summed = sums, summed
+        return sums
+
+    def _transform(self, accepted: Sequence[Accepted]) -> HammerWindow:
+        """Transform hits under the one window that serves them all, and keep them.
 
         Raises:
             NoHitFound: there are none.
@@ -141,8 +165,13 @@ class GrowingAverage:
         }
         window = join_windows([hit.own for hit in self._kept.values()])
         self._kept = {cut: _under(hit, window) for cut, hit in self._kept.items()}
+        return window
+
+    def _spectra(self, accepted: Sequence[Accepted]) -> HitSpectra:
+        """Return the spectra of hits; see `_transform`."""
+        self._transform(accepted)
         parts = [hit.spectra for hit in self._kept.values()]
-        return join_spectra([part for part in parts if part is not None]), window
+        return join_spectra([part for part in parts if part is not None])
 
     def _cut(self, accepted: Accepted, length: int) -> _Transformed:
         trigger = accepted.cut.trigger

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""Sums over the hits of one point: a hit is added or taken out in constant time."""
+
+import numpy as np
+
+from jointbench.signal.frf.estimators import pair_of_sums
+from jointbench.signal.frf.excited_band import excited_band_of
+from jointbench.signal.frf.frf import KIND_OF_RESPONSE, Frf
+from jointbench.signal.hits.hit_spectra import HitSpectra
+from jointbench.signal.hits.windows import HammerWindow
+
+
+class RunningSums:
+    """|F|^2, |X|^2 and X F* of each response, summed over hits at one point.
+
+    Taking a hit out leaves the rounding of its terms, 1e-16 of the largest sum.
+
+    Source:
+        Bendat and Piersol, Random Data (2010), sec. 5.2 and 6.1.
+    """
+
+    def __init__(self, first: HitSpectra, window: HammerWindow) -> None:
+        """Begin with the spectra of one hit.
+
+        Args:
+            first: of the hit.
+            window: that it, and every further hit, is transformed under.
+        """
+        self.window, self.hits = window, 0
+        self._frequency, self._quantity = first.frequency, first.quantity
+        self._outputs, self._point = first.labels[0], first.points[0]
+        self._force = np.zeros(first.frequency.size)
+        self._power = np.zeros(first.response.shape[1:])
+        self._cross = np.zeros(first.response.shape[1:], complex)
+        self.add(first)
+
+    def add(self, spectra: HitSpectra) -> None:
+        """Add a hit."""
+        self._change(spectra, 1)
+
+    def take_out(self, spectra: HitSpectra) -> None:
+        """Take a hit out that was added."""
+        self._change(spectra, -1)
+
+    def frf(self) -> Frf:
+        """Return the average as H1, with coherence and variance from two hits on."""
+        force = np.maximum(self._force, 0.0)
+        safe = np.where(force > 0.0, force, 1.0)
+        pairs = []
+        for cross, power in zip(self._cross, self._power, strict=True):
+            explained = np.abs(cross) ** 2 / safe
+            sums = force, power, np.maximum(power - explained, 0.0)
+            pairs.append(pair_of_sums(cross / safe, sums, self.hits))
+        response = np.array([pair.response for pair in pairs])[:, None]
+        coherence = np.array([pair.coherence for pair in pairs])[:, None]
+        variance = np.array([pair.variance for pair in pairs])[:, None]
+        several = self.hits > 1
+        return Frf(
+            frequency=self._frequency,
+            response=response,
+            kind=KIND_OF_RESPONSE[self._quantity],
+            coherence=coherence if several else None,
+            variance=variance if several else None,
+            added_decay_rate=self.window.decay_rate or 0.0,
+            outputs=self._outputs,
+            inputs=(self._point,),
+            averages=self.hits,
+            usable_band=excited_band_of(self._force, self._frequency),
+        )
+
+    def _change(self, spectra: HitSpectra, sign: int) -> None:
+        force, response = spectra.force[0], spectra.response[0]
+        self.hits += sign
+        self._force += sign * np.abs(force) ** 2
+        self._power += sign * np.abs(response) ** 2
+        self._cross += sign * (response * force.conj())
