@@ -10,7 +10,7 @@ import typer
 _Maps = Annotated[
     list[Path],
     typer.Argument(
-        metavar="MAP...", help="Measured map of one side, or of both sides in contact."
+        metavar="MAP", help="Measured map of one side, or of both sides in contact."
     ),
 ]
 _Modulus = Annotated[
