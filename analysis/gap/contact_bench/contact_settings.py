@@ -219,6 +219,12 @@ class ContactBenchSettings:
     starts: int = numerical(
         3, "starts", "starts of each effect that are fitted", "made joints"
     )
+    close_fits: int = numerical(
+        4,
+        "fits",
+        "best fits that are fitted again with the law linearised at the best one",
+        "made joints",
+    )
     gap_slope: float = numerical(
         0.18,
         "-",

@@ -27,9 +27,6 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-CLOSE = 4
-"""Fits that are fitted again with the law linearised at the best one."""
-
 
 def search_contact(bench: ContactBench, progress: Progress) -> SearchOutcome:
     """Fit the base, and search for a missing effect if it does not explain the joint.
@@ -154,9 +151,13 @@ def _again(
     if not fits:
         return bench, base, fits
     bench = bench.refine(fits[0].base, ())
-    close = [_minimum(bench, f.candidates, f.x) for f in fits[:CLOSE]]
+    close = [_minimum(bench, f.candidates, f.x) for f in fits[: CONTACT.close_fits]]
     base = _minimum(bench, (), base.x)
-    return bench, base, sorted([*close, *fits[CLOSE:]], key=lambda f: score(bench, f))
+    return (
+        bench,
+        base,
+        sorted([*close, *fits[CONTACT.close_fits :]], key=lambda f: score(bench, f)),
+    )
 
 
 def accept_contact(
