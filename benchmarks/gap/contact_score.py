@@ -234,8 +234,8 @@ surface with errors of 5 to 10 %. The margin is the cost of the best rival less 
 the true effect on the same joint without scatter and noise; rivals that contain the
 true effect as a special case are not counted. Shares have 95 % Wilson intervals.
 
-Seeds 0 to 129, 300 to 314 and 50000 to 50014 (one effect) and 20000 to 20216 (none)
-were used while effects and limits were set; none of them is counted here.
+Seeds 0 to 399, 50000 to 50014 and 60000 to 60045 (one effect), 20000 to 20216 and 45000
+to 45022 (none) were used while effects and limits were set; none is counted here.
 
 """
 
