@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """``jointbench simulate``: a simulated NI chassis served over gRPC."""
 
+from urllib.parse import parse_qsl, urlsplit
+
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.chassis.chassis_url import chassis_from_url, is_plates_url
 from jointbench.simulators.chassis.server import SimulatedChassis
@@ -11,7 +13,8 @@ def run_simulate(url: str, module: str = "") -> None:
     """Serve a simulated chassis until interrupted.
 
     Args:
-        url: simulated bench, for example ``sim:plates?interval=2&port=31763``.
+        url: simulated bench, for example ``sim:plates?interval=2&port=31763``; in real
+            time unless it states a speed.
         module: type of its modules, empty for that of the URL.
 
     Raises:
@@ -25,6 +28,9 @@ def run_simulate(url: str, module: str = "") -> None:
         )
     if module:
         url += f"{'&' if '?' in url else '?'}module={module}"
+    if "speed" not in dict(parse_qsl(urlsplit(url).query)):
+        # A program of another's expects samples at their rate, as from hardware.
+        url += f"{'&' if '?' in url else '?'}speed=1"
     screen = console()
     with SimulatedChassis(chassis_from_url(url)) as server:
         screen.print(f"serving NI-DAQmx at {server.address}; stop with Ctrl-C")
