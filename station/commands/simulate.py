@@ -26,13 +26,8 @@ def run_simulate(url: str, module: str = "") -> None:
         raise UsageError(
             f"{url!r} is not a simulated chassis; write 'sim:plates?port=31763'"
         )
-    if module:
-        url += f"{'&' if '?' in url else '?'}module={module}"
-    if "speed" not in dict(parse_qsl(urlsplit(url).query)):
-        # A program of another's expects samples at their rate, as from hardware.
-        url += f"{'&' if '?' in url else '?'}speed=1"
     screen = console()
-    with SimulatedChassis(chassis_from_url(url)) as server:
+    with SimulatedChassis(chassis_from_url(complete_url(url, module))) as server:
         screen.print(f"serving NI-DAQmx at {server.address}; stop with Ctrl-C")
         for line in server.described():
             screen.print(f"  {line}", soft_wrap=True)
@@ -42,3 +37,13 @@ def run_simulate(url: str, module: str = "") -> None:
             soft_wrap=True,
         )
         server.wait()
+
+
+def complete_url(url: str, module: str) -> str:
+    """Return a URL with the modules, and in real time unless it states a speed."""
+    stated = dict(parse_qsl(urlsplit(url).query))
+    added = [f"module={module}"] if module else []
+    # A program of another's expects samples at their rate, as from hardware.
+    added += [] if "speed" in stated else ["speed=1"]
+    joint = "&" if "?" in url else "?"
+    return url + (joint + "&".join(added) if added else "")
