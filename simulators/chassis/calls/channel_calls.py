@@ -4,6 +4,7 @@
 # The methods carry the names that the protocol gives them.
 # ruff: noqa: N802
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -19,11 +20,13 @@ from jointbench.simulators.chassis.protocol import (
     number_of,
 )
 from jointbench.simulators.chassis.tasks import measured_quantities as kinds
+from jointbench.simulators.chassis.tasks.channel_names import listed_names
 from jointbench.simulators.chassis.tasks.measured_quantities import MeasuredQuantity
 from jointbench.simulators.chassis.tasks.task import SimulatedTask
 from jointbench.simulators.chassis.tasks.virtual_channels import new_channel
 
 _DEFAULT = constants.TerminalConfiguration.DEFAULT.value
+_NUMBERED = re.compile(r"(?P<stem>.*?)(?P<number>\d{0,9})", re.ASCII | re.DOTALL)
 _CUSTOM = constants.VoltageUnits.FROM_CUSTOM_SCALE.value
 _QUIETEST = 20e-6  # [Pa] at 0 dB
 
@@ -124,13 +127,23 @@ def _fed(request: Any, measured: MeasuredQuantity) -> dict[str, Value]:
 
 
 def _names(given: str, inputs: list[Input]) -> list[str]:
-    """Return the names of channels: one for each, a list, or one with numbers."""
-    if not given:
+    """Return the names of channels; the last one given is numbered for the rest.
+
+    Source:
+        NI-DAQmx help, Channel Name Generation: eight inputs and "foo31" give foo31 to
+        foo38, "a0:3, b" gives a0 to a3 and b0 to b3.
+    """
+    if not given.strip():
         return [each.name for each in inputs]
-    words = [word.strip() for word in given.split(",")]
-    if len(words) == len(inputs):
-        return words
-    return [f"{given}{n}" for n in range(len(inputs))]
+    names = listed_names(given, at_most=len(inputs))
+    if len(names) >= len(inputs):
+        return names[: len(inputs)]
+    last = names.pop()
+    match = _NUMBERED.fullmatch(last)
+    assert match is not None  # it matches any text
+    rest = range(int(match["number"] or 0), int(match["number"] or 0) + len(inputs))
+    stem = match["stem"].rstrip() if match["number"] else last
+    return [*names, *(f"{stem}{n}" for n in rest)][: len(inputs)]
 
 
 def _require_new(task: SimulatedTask, names: list[str]) -> None:

@@ -18,6 +18,7 @@ from jointbench.simulators.chassis.property_values import Value
 from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal, constants
 
 _CHASSIS_PRODUCT = "cDAQ-9178"
+_CHASSIS_LINES = 2  # trigger inputs of a cDAQ-9178, on BNC connectors
 _VERSION = {
     "NIDAQ_MAJOR_VERSION": 24,
     "NIDAQ_MINOR_VERSION": 5,
@@ -135,7 +136,7 @@ def _of_chassis(inventory: Inventory, attribute: str) -> Value:
         "AI_NUM_SAMP_TIMING_ENGINES": TIMING_ENGINES,
         "ANLG_TRIG_SUPPORTED": False,
         "DIG_TRIG_SUPPORTED": True,
-        "TERMINALS": "",
+        "TERMINALS": ", ".join(chassis_terminals(inventory.name)),
         **dict.fromkeys(_EMPTY, ""),
     }
     values["AI_PHYSICAL_CHANS"] = ""
@@ -154,6 +155,11 @@ _EMPTY = (
     "CO_PHYSICAL_CHANS",
     "ACCESSORY_PRODUCT_TYPES",
 )
+
+
+def chassis_terminals(name: str) -> tuple[str, ...]:
+    """Return the trigger inputs of a chassis, which every module can use."""
+    return tuple(f"/{name}/PFI{n}" for n in range(_CHASSIS_LINES))
 
 
 def terminals(device: Device) -> tuple[str, ...]:
@@ -198,7 +204,7 @@ _OF_DEVICE: dict[str, Callable[[Device], Value]] = {
     "PRODUCT_CATEGORY": _category,
     "PRODUCT_NUM": lambda d: 0,
     "BUS_TYPE": _bus,
-    "SERIAL_NUM": lambda d: _SERIAL + d.slot,
+    "SERIAL_NUM": lambda d: _SERIAL + 1 + d.first,
     "IS_SIMULATED": lambda d: True,
     "ANLG_TRIG_SUPPORTED": lambda d: d.type.analogue_trigger,
     "DIG_TRIG_SUPPORTED": lambda d: bool(d.type.digital_lines or d.chassis),

@@ -12,7 +12,13 @@ from jointbench.simulators.chassis.modules.inventory import (
 )
 from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal
 
-_NAMED = re.compile(r"/?(?P<device>[^/:,]+)/ai(?P<first>\d+)(:(?P<last>\d+))?")
+# "Dev1/ai0", "Dev1/ai0:3" or "Dev1/ai0:Dev1/ai3", in letters of either case; no device
+# has inputs of more than a few digits.
+_NAMED = re.compile(
+    r"/?(?P<device>[^/:,]+)/ai(?P<first>\d{1,9})"
+    r"(:(/?(?P=device)/ai)?(?P<last>\d{1,9}))?",
+    re.IGNORECASE | re.ASCII,
+)
 
 
 def described(device: Device) -> str:

@@ -25,6 +25,7 @@ from jointbench.simulators.chassis.tasks.verification import (
     require_clock,
     terminal,
     verify_channels,
+    verify_mode,
     verify_samples,
 )
 from jointbench.simulators.chassis.tasks.virtual_channels import VirtualChannel
@@ -173,6 +174,7 @@ class SimulatedTask:
         verify_channels(self.channels)
         rate = 1000.0
         if self.clocked:
+            verify_mode(self.timing, self.devices)
             verify_samples(self.timing)
             rate = self.rate
             source = self.timing.text("SAMP_CLK_SRC")
@@ -204,8 +206,10 @@ class SimulatedTask:
                 DAQmxErrors.BUFFER_WITH_ON_DEMAND_SAMP_TIMING,
                 "Buffered operations cannot use On Demand for Sample Timing.",
             )
-        finite, every = self.finite, self.events.get("every_n", 0)
-        if finite is not None and every and self.buffer % every:
+        every = self.events.get("every_n", 0)
+        # The driver chooses the buffer of a continuous task as a multiple.
+        fixed = self.finite is not None or self.buffers.changed("INPUT_BUF_SIZE")
+        if fixed and every and self.buffer % every:
             raise Refusal(
                 DAQmxErrors.BUFFER_SIZE_NOT_MULTIPLE_OF_EVERY_N_SAMPS_EVENT_INTERVAL_WHEN_DMA,
                 "Buffer size in samples per channel must be a multiple of the interval "
@@ -296,7 +300,7 @@ class SimulatedTask:
         wanted = self.reading.text("CHANNELS_TO_READ")
         if not wanted:
             return list(range(len(self.channels)))
-        return [self.index(name) for name in listed_names(wanted, self.channels)]
+        return [self.index(name) for name in self._listed(wanted)]
 
     def index(self, name: str) -> int:
         """Return the index of a channel by its name.
@@ -317,10 +321,12 @@ class SimulatedTask:
         """Return the channels of a list of names; all of them for an empty one."""
         if not names:
             return list(self.channels)
-        return [
-            self.channels[self.index(name)]
-            for name in listed_names(names, self.channels)
-        ]
+        return [self.channels[self.index(name)] for name in self._listed(names)]
+
+    def _listed(self, names: str) -> list[str]:
+        known = {channel.name.lower() for channel in self.channels}
+        # No list is longer than the channels there are; one more is refused.
+        return listed_names(names, at_most=len(known) + 1, known=known)
 
     def _volts(self, first: int, count: int) -> FloatArray:
         volts = self._bench.signals.volts(first, count, self.channels)

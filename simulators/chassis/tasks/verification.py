@@ -8,7 +8,10 @@ Source:
 
 from collections.abc import Sequence
 
-from jointbench.simulators.chassis.modules.device_properties import terminals
+from jointbench.simulators.chassis.modules.device_properties import (
+    chassis_terminals,
+    terminals,
+)
 from jointbench.simulators.chassis.modules.inventory import Device
 from jointbench.simulators.chassis.modules.module_type import ModuleType
 from jointbench.simulators.chassis.property_values import PropertyValues
@@ -23,6 +26,15 @@ from jointbench.simulators.chassis.tasks.virtual_channels import VirtualChannel
 LEAST_SAMPLES = 2
 _INTERNAL = constants.ExcitationSource.INTERNAL.value
 _SAME_CURRENT = 1e-6  # [A]
+# Names as NI's texts have them, by those of its Python package.
+_AS_NI_WRITES = {
+    "AI_ACCEL_SENSITIVITY": "AI_Accel_Sensitivity",
+    "AI_FORCE_IEPE_SENSOR_SENSITIVITY": "AI_Force_IEPESensor_Sensitivity",
+    "AI_VELOCITY_IEPE_SENSOR_SENSITIVITY": "AI_Velocity_IEPESensor_Sensitivity",
+    "AI_MICROPHONE_SENSITIVITY": "AI_Microphone_Sensitivity",
+    "PSEUDO_DIFF": "PseudoDiff",
+    "DIFF": "Diff",
+}
 
 
 def verify_channels(channels: Sequence[VirtualChannel]) -> None:
@@ -42,13 +54,15 @@ def verify_channels(channels: Sequence[VirtualChannel]) -> None:
         _verify_limits(channel)
         _verify_input(channel)
     _verify_distinct(channels)
+    _verify_together([channel.input.device for channel in channels])
 
 
 def _verify_sensor(channel: VirtualChannel) -> None:
     values, module = channel.values, channel.input.device.type
     name = channel.measured.sensitivity
     if name and not values.number(name) > 0:
-        raise bad_value(name, values.number(name), low=0.0, channel=channel.name)
+        written = _AS_NI_WRITES[name]
+        raise bad_value(written, values.number(name), low=0.0, channel=channel.name)
     if values.whole("AI_EXCIT_SRC") != _INTERNAL:
         return
     if not module.currents:
@@ -98,8 +112,11 @@ def _verify_input(channel: VirtualChannel) -> None:
     kind = constants.TerminalConfiguration
     offered = {kind[name].value for name in (*module.terminals, "DEFAULT")}
     if values.whole("AI_TERM_CFG") not in offered:
-        choice = tuple(f"DAQmx_Val_{name}" for name in module.terminals)
+        choice = tuple(
+            f"DAQmx_Val_{_AS_NI_WRITES.get(name, name)}" for name in module.terminals
+        )
         asked = kind(values.whole("AI_TERM_CFG")).name
+        asked = _AS_NI_WRITES.get(asked, asked)
         raise bad_value(
             "AI_TermCfg", f"DAQmx_Val_{asked}", choice=choice, channel=channel.name
         )
@@ -118,6 +135,41 @@ def _verify_distinct(channels: Sequence[VirtualChannel]) -> None:
                 f"Physical Channel Name: {channel.input.name}",
             )
         seen.add(channel.input.number)
+
+
+def _verify_together(used: Sequence[Device]) -> None:
+    """Refuse devices that cannot share a clock: not of one chassis, nor alike.
+
+    Source:
+        NI-DAQmx help, Multidevice Tasks: modules of one chassis, or boards of one kind
+        that a trigger bus connects.
+    """
+    groups = {each.chassis or each.name for each in used}
+    alike = len({each.type.product for each in used}) == 1
+    boards = all(each.type.product.startswith("PCI") for each in used)
+    if len(groups) > 1 and not (alike and boards):
+        names = ", ".join(dict.fromkeys(each.name for each in used))
+        raise Refusal(
+            DAQmxErrors.MULTI_DEVS_IN_TASK,
+            "Specified task contains channels on devices that cannot be in one "
+            f"task.\n\nCreate a task for each device.\n\nDevices: {names}",
+        )
+
+
+def verify_mode(timing: PropertyValues, used: Sequence[Device]) -> None:
+    """Refuse single points timed by hardware on a bus that cannot wait for them.
+
+    Raises:
+        Refusal: the mode is that, and a device is in a chassis or on USB.
+    """
+    kind = constants.AcquisitionType
+    boards = all(each.type.product.startswith("PCI") for each in used)
+    mode = timing.whole("SAMP_QUANT_SAMP_MODE")
+    if mode == kind.HW_TIMED_SINGLE_POINT.value and not boards:
+        choice = ("DAQmx_Val_FiniteSamps", "DAQmx_Val_ContSamps")
+        raise bad_value(
+            "SampQuant_SampMode", "DAQmx_Val_HWTimedSinglePoint", choice=choice
+        )
 
 
 def require_clock(channels: Sequence[VirtualChannel]) -> None:
@@ -199,7 +251,10 @@ def terminal(own: Device, all_: Sequence[Device], named: str) -> str:
         Refusal: no device has it.
     """
     full = named if named.startswith("/") else f"/{own.name}/{named}"
-    known = {name.lower(): name for each in all_ for name in terminals(each)}
+    chassis = {each.chassis for each in all_ if each.chassis}
+    lines = [line for name in chassis for line in chassis_terminals(name)]
+    lines += [line for each in all_ for line in terminals(each)]
+    known = {line.lower(): line for line in lines}
     analogue = {f"/{each.name}/apfi{n}".lower() for each in all_ for n in (0, 1)}
     if full.lower() not in known and full.lower() not in analogue:
         raise Refusal(

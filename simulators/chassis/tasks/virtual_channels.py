@@ -143,7 +143,6 @@ def _defaults(at: Input, measured: MeasuredQuantity) -> dict[str, Value]:
         "CHAN_DESCR": "",
         "CHAN_IS_GLOBAL": False,
         "CHAN_TYPE": constants.ChannelType.ANALOG_INPUT.value,
-        "CHAN_SYNC_UNLOCK_BEHAVIOR": 0,
         "PHYSICAL_CHAN_NAME": at.name,
         "AI_CUSTOM_SCALE_NAME": "",
         measured.units: constants.VoltageUnits.VOLTS.value,

@@ -42,6 +42,8 @@ def block(
         ("cDAQSim1Mod4/ai2:0", [2, 1, 0]),
         ("cDAQSim1Mod4/ai0, cDAQSim1Mod4/ai5:6", [0, 5, 6]),
         ("/cDAQSim1Mod4/ai7", [7]),
+        ("cDAQSim1Mod4/ai1:cDAQSim1Mod4/ai2", [1, 2]),
+        ("CDAQSIM1MOD4/AI3", [3]),
     ],
 )
 def test_a_list_of_inputs_makes_a_channel_of_each(
@@ -51,6 +53,26 @@ def test_a_list_of_inputs_makes_a_channel_of_each(
     task = block(new_task(), text)
     assert task.channel_names == [f"cDAQSim1Mod4/ai{n}" for n in inputs]
     assert len(task.read(4)) == (4 if len(inputs) == 1 else len(inputs))
+
+
+@pytest.mark.parametrize(
+    ("given", "names"),
+    [
+        ("foo31", ["foo31", "foo32", "foo33"]),
+        ("foo 123", ["foo123", "foo124", "foo125"]),
+        ("a0, b", ["a0", "b0", "b1"]),
+        ("a0:2", ["a0", "a1", "a2"]),
+        ("a0:999999999", ["a0", "a1", "a2"]),
+        ("a, b, c", ["a", "b", "c"]),
+    ],
+)
+def test_names_continue_as_ni_generates_them(
+    new_task: NewTask, given: str, names: list[str]
+) -> None:
+    """The examples of NI's page on the generation of channel names."""
+    task = new_task()
+    task.ai_channels.add_ai_voltage_chan("Dev2/ai0:2", given)
+    assert task.channel_names == names
 
 
 def test_one_name_for_several_inputs_gets_numbers(new_task: NewTask) -> None:
@@ -130,6 +152,19 @@ def test_a_start_trigger_sets_the_first_sample(new_task: NewTask, slope: Slope) 
     beyond = first[0] >= 1.0 if slope is Slope.RISING else first[0] <= 1.0
     assert beyond
     assert abs(first[0] - 1.0) < 0.6
+
+
+def test_a_line_of_the_chassis_starts_a_module(
+    new_task: NewTask, channel: grpc.Channel
+) -> None:
+    """A cDAQ-9178 has two trigger inputs, which it lists among its terminals."""
+    session = nidaqmx.GrpcSessionOptions(channel, "")
+    chassis = nidaqmx.system.Device("cDAQSim1", grpc_options=session)
+    assert chassis.terminals == ["/cDAQSim1/PFI0", "/cDAQSim1/PFI1"]
+    task = block(new_task())
+    task.triggers.start_trigger.cfg_dig_edge_start_trig("/cDAQSim1/PFI1")
+    assert task.triggers.start_trigger.dig_edge_src == "/cDAQSim1/PFI1"
+    assert len(task.read(200)) == 200
 
 
 def test_a_window_ends_a_block(new_task: NewTask) -> None:

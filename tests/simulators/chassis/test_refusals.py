@@ -316,6 +316,36 @@ def events_that_do_not_divide(task: nidaqmx.Task) -> None:
     task.start()
 
 
+def events_that_do_not_divide_a_stated_buffer(task: nidaqmx.Task) -> None:
+    """A continuous task keeps the size of buffer that the program states."""
+    volt(task)
+    task.timing.cfg_samp_clk_timing(12_800.0, sample_mode=CONTINUOUS)
+    task.in_stream.input_buf_size = 1000
+    task.register_every_n_samples_acquired_into_buffer_event(300, lambda *_: 0)
+    task.start()
+
+
+def unrelated_devices(task: nidaqmx.Task) -> None:
+    """A module of a chassis and a board of the computer share no clock."""
+    volt(task)
+    volt(task, BOARD)
+    task.control(TaskMode.TASK_VERIFY)
+
+
+def single_points_on_usb(task: nidaqmx.Task) -> None:
+    """A chassis on USB cannot time single points by hardware."""
+    volt(task)
+    task.timing.cfg_samp_clk_timing(
+        12_800.0, sample_mode=AcquisitionType.HW_TIMED_SINGLE_POINT
+    )
+    task.start()
+
+
+def input_of_many_digits(task: nidaqmx.Task) -> None:
+    """A number that no integer of the language is read from."""
+    volt(task, "Dev2/ai" + 5000 * "9")
+
+
 def events_of_nothing(task: nidaqmx.Task) -> None:
     """An interval of no samples."""
     clocked(task)
@@ -379,6 +409,13 @@ REFUSED: tuple[tuple[Callable[[nidaqmx.Task], None], DAQmxErrors], ...] = (
         events_that_do_not_divide,
         E.BUFFER_SIZE_NOT_MULTIPLE_OF_EVERY_N_SAMPS_EVENT_INTERVAL_WHEN_DMA,
     ),
+    (
+        events_that_do_not_divide_a_stated_buffer,
+        E.BUFFER_SIZE_NOT_MULTIPLE_OF_EVERY_N_SAMPS_EVENT_INTERVAL_WHEN_DMA,
+    ),
+    (unrelated_devices, E.MULTI_DEVS_IN_TASK),
+    (single_points_on_usb, E.INVALID_ATTRIBUTE_VALUE),
+    (input_of_many_digits, E.PHYSICAL_CHAN_DOES_NOT_EXIST),
     (events_of_nothing, E.EVERY_N_SAMPS_EVENT_INTERVAL_ZERO_NOT_SUPPORTED),
     (logging_to_a_file, E.MEASUREMENT_TYPE_NOT_SUPPORTED_FOR_LOGGING),
 )
