@@ -9,7 +9,7 @@ _PIECE = 1 << 20
 """Heights summed at a time, so that a map needs no copy."""
 
 
-def height_statistics(heights: FloatArray) -> dict[str, float]:
+def height_statistics(heights: FloatArray) -> dict[str, float | None]:
     """Return the parameters that depend on the distribution of heights only.
 
     Args:
@@ -17,7 +17,7 @@ def height_statistics(heights: FloatArray) -> dict[str, float]:
 
     Returns:
         ``a`` arithmetic mean height [m], ``q`` root mean square [m], ``sk`` skewness
-        [-] and ``ku`` kurtosis [-] (0 for a plane).
+        [-] and ``ku`` kurtosis [-] (None for a plane, which has no deviation).
 
     Source:
         ISO 21920-2:2021, 4.3; ISO 25178-2:2021, 4.2.
@@ -33,8 +33,8 @@ def height_statistics(heights: FloatArray) -> dict[str, float]:
     return {
         "a": mean,
         "q": root,
-        "sk": third / root**3 if root > 0 else 0.0,
-        "ku": fourth / second**2 if root > 0 else 0.0,
+        "sk": third / root**3 if root > 0 else None,
+        "ku": fourth / second**2 if root > 0 else None,
     }
 
 
@@ -62,7 +62,7 @@ def section_extremes(
     high = np.maximum.reduceat(top, parts)
     low = np.minimum.reduceat(bottom, parts)
     met = np.isfinite(high)
-    peak, valley = float(high[met].mean()), float(-low[met].mean())
+    peak, valley = float(high[met].mean()), 0.0 - float(low[met].mean())
     return {
         "p": peak,
         "v": valley,

@@ -51,12 +51,13 @@ def material_ratio(heights: FloatArray) -> MaterialRatio:
     return MaterialRatio(np.sort(heights, axis=None)[::-1])
 
 
-def core_parameters(curve: MaterialRatio) -> dict[str, float]:
+def core_parameters(curve: MaterialRatio) -> dict[str, float | None]:
     """Return the parameters of the two-line construction.
 
     Returns:
         ``k`` core height, ``pk`` reduced peak height, ``vk`` reduced valley depth [m],
-        ``mr1`` and ``mr2`` material ratios at the ends of the core [-].
+        ``mr1`` and ``mr2`` material ratios at the ends of the core [-] (None for
+        a plane).
 
     Source:
         ISO 21920-2:2021, 4.6 and ISO 25178-2:2021, annex B: the equivalent line is the
@@ -64,6 +65,8 @@ def core_parameters(curve: MaterialRatio) -> dict[str, float]:
         beyond its ends become triangles of equal area.
     """
     heights = curve.heights
+    if heights[0] == heights[-1]:
+        return {"k": 0.0, "pk": 0.0, "vk": 0.0, "mr1": None, "mr2": None}
     slope, top = _equivalent_line(heights)
     bottom = top + slope
     # A plateau of equal heights belongs to the core, whatever rounding does.
@@ -74,7 +77,7 @@ def core_parameters(curve: MaterialRatio) -> dict[str, float]:
     whole = float(heights.mean())
     valleys = (1 - second) * bottom - (whole - curve.area_above(second))
     return {
-        "k": -slope,
+        "k": 0.0 - slope,
         "pk": max(2 * peaks / first, 0.0) if first > 0 else 0.0,
         "vk": max(2 * valleys / (1 - second), 0.0) if second < 1 else 0.0,
         "mr1": first,

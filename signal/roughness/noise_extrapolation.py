@@ -18,6 +18,10 @@ _PAIRS = 12
 _MAP_PAIRS = 6
 _DOSES = (1.0, 2.0)
 """Variances of added noise over that of the measured heights [-]."""
+_CLEAR = 4.0
+"""Extrapolated part of a parameter over the scatter of its steps, from which it shifts
+the interval [-]: the extrapolation counts a step of the value itself twice, and two
+standard deviations of that are clear."""
 _SEED = 20211201
 
 
@@ -28,7 +32,8 @@ def noise_part(
 
     Further noise is added to the texture in two doses; a parabola through the means
     leads back to no noise (simulation and extrapolation). Half of its difference from
-    a straight line is part of the scatter.
+    a straight line is part of the scatter. What is not clear beside the steps of a
+    parameter (material ratios, profile elements) adds to the scatter instead.
     """
     if not noise:
         return {}, {}
@@ -48,10 +53,15 @@ def noise_part(
     added = [cases.mean(axis=1) - base for cases in doses]
     straight, curved = added[0].mean(axis=0), 3 * added[0] - added[1]
     bias = curved.mean(axis=0)
+    # The mean of both signs holds no straight part: what scatters in it are steps.
+    steps = np.sqrt(2) * added[0].std(axis=0, ddof=1)
+    clear = np.abs(bias) > _CLEAR * steps
+    rest = np.where(clear, (bias - straight) / 2, straight)
     # Scatter by noise, of the extrapolation and of its finite number of draws.
     by_noise = doses[0].reshape(-1, base.size).std(axis=0, ddof=1)
     of_mean = curved.std(axis=0, ddof=1) / np.sqrt(len(drawn))
-    scatter = np.sqrt(by_noise**2 + of_mean**2 + ((bias - straight) / 2) ** 2)
+    scatter = np.sqrt(by_noise**2 + of_mean**2 + rest**2)
+    bias = np.where(clear, bias, 0.0)
     return (
         dict(zip(names, bias.tolist(), strict=True)),
         dict(zip(names, scatter.tolist(), strict=True)),

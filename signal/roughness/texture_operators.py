@@ -23,6 +23,8 @@ from jointbench.signal.surface.levelling import MINIMUM_VALID_POINTS, level
 ENDS = 0.5
 """Length left out at each end, over the nesting index of the L-filter [-]."""
 _SAME = (1.0, 1.0)
+_ROUNDING = 1e-12
+"""Height that is rounding, over the largest measured height [-]."""
 _ALREADY = 1e-3
 """Relative difference below which a stated cut-off is the nesting index [-]."""
 
@@ -63,7 +65,8 @@ def _profile_texture(
     long = smooth_long(primary, valid, (profile.spacing,), given)
     inner, sections = _evaluated(profile, settings, given.long is not None, remarks)
     known = (valid & np.isfinite(long))[inner]
-    heights = np.where(known, (primary - long)[inner], 0.0)
+    rough = _without_rounding(primary - long, profile)
+    heights = np.where(known, rough[inner], 0.0)
     if int(known.sum()) < MINIMUM_VALID_POINTS:
         raise UsageError(
             f"profile {profile.name!r} has {int(known.sum())} points in its evaluation "
@@ -93,12 +96,19 @@ def _map_texture(
     """
     remarks: list[str] = []
     given = _stretched(_undone(areal, settings, remarks), stretch)
+    side = min(n * d for n, d in zip(areal.heights.shape, areal.spacing, strict=True))
+    if given.short is not None and side < given.short:
+        remarks.append(
+            f"the map is {side * 1e6:.3g} µm wide, less than the nesting index of the "
+            f"S-filter of {given.short * 1e6:.3g} µm: across it little but the mean "
+            "remains"
+        )
     flat = _without_form(areal, settings)
     primary, valid = _short_waves_removed(flat, given)
     long = smooth_long(primary, valid, areal.spacing, given)
     inner = _inner_map(areal, settings, given.long is not None, remarks)
     known = (valid & np.isfinite(long))[inner]
-    heights = (primary - long)[inner]
+    heights = _without_rounding(primary - long, areal)[inner]
     mean = heights[known].mean() if known.any() else 0.0
     return Texture(
         heights=np.where(known, heights - mean, 0.0),
@@ -109,6 +119,14 @@ def _map_texture(
         remarks=tuple(remarks),
         offset=(inner[0].start, inner[1].start),
     )
+
+
+def _without_rounding(heights: FloatArray, surface: Surface) -> FloatArray:
+    """Return zeros where all that remains of a surface is rounding [m]."""
+    largest = float(np.abs(surface.heights).max())
+    if np.nanmax(np.abs(heights), initial=0.0) <= _ROUNDING * largest:
+        return np.zeros(heights.shape)
+    return heights
 
 
 def smooth_long(

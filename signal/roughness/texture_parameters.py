@@ -71,7 +71,7 @@ def map_parameters(texture: Texture) -> TextureParameters:
     values: dict[str, float | None] = {
         "Sz": top - bottom,
         "Sp": top,
-        "Sv": -bottom,
+        "Sv": 0.0 - bottom,
         "Sdq": None if np.isnan(gradient) else gradient,
         "Sdr": None if np.isnan(area) else area,
         "Sal": decay.shortest,
@@ -83,7 +83,7 @@ def map_parameters(texture: Texture) -> TextureParameters:
     return TextureParameters(values, curve)
 
 
-def _core(letter: str, curve: MaterialRatio) -> dict[str, float]:
+def _core(letter: str, curve: MaterialRatio) -> dict[str, float | None]:
     """Return the core parameters under the names of their standard."""
     found = core_parameters(curve)
     return {

@@ -62,6 +62,8 @@ def decay_lengths(
         ISO 25178-2:2021, 4.4: each lag is normalised by the pairs of measured points.
     """
     found = DecayLengths(None, None)
+    if not heights.any():
+        return found
     for share in (_FIRST_LAG, _MOST_LAG):
         most = [max(2, int(share * n)) for n in heights.shape]
         found = _decay(autocorrelation(heights, valid, (most[0], most[1])), spacing)
@@ -204,6 +206,7 @@ def lay_direction(
     power[(far < low) | (far > high)] = 0.0
     if not power.any():
         return None
+    power /= power.max()
     return _densest_direction(rows, columns, power, line)
 
 
@@ -223,8 +226,10 @@ def _densest_direction(
     around = scipy.ndimage.uniform_filter1d(along, 3, mode="wrap")
     centre = (int(np.argmax(around)) + 0.5) * np.pi / _DIRECTION_BINS
     apart = (angle - centre + np.pi / 2) % np.pi - np.pi / 2
-    top = np.abs(apart) < np.pi / _DIRECTION_BINS
+    # The three bins of the mean: the middle one may be empty.
+    half = 1.5 * np.pi / _DIRECTION_BINS * (1 + 1e-9)
+    top = np.abs(apart) <= half
     radius = float(np.average(far[used][top], weights=weight[top]))
-    near = np.abs(apart) < max(np.pi / _DIRECTION_BINS, _LOBE * line / radius)
+    near = np.abs(apart) <= max(half, _LOBE * line / radius)
     wave = centre + float(np.average(apart[near], weights=weight[near]))
     return float((wave + np.pi / 2) % np.pi)

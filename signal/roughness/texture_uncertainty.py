@@ -58,6 +58,8 @@ def measured_texture(
     texture = surface_texture(surface, settings)
     values = texture_parameters(texture).values
     noise = errors.noise if errors.noise is not None else height_noise(surface)
+    if not texture.heights.any():
+        noise = 0.0  # What is left of equal heights is rounding, not noise.
     piece = _piece(surface, settings)
     if piece is surface:
         near, here = values, texture

@@ -98,9 +98,10 @@ def _checked(
     """Return the longest cut-off [m] after checking both."""
     given = [one for one in (short, long) if one is not None]
     if not given or min(given) < 2 * pitch:
+        said = " and ".join(f"{one:g} m" for one in given) or "none"
         raise UsageError(
-            f"cut-offs of {short!r} and {long!r} m; a filter has one at least, and not "
-            f"below two samples ({2 * pitch:g} m)"
+            f"cut-offs: {said}; a filter has one at least, and not below two samples "
+            f"({2 * pitch:g} m)"
         )
     if short is not None and long is not None and not short < long:
         raise UsageError(

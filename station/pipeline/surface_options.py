@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
@@ -75,8 +75,7 @@ def surface_treatment(
         degrees: direction of the lines of a map [deg].
 
     Raises:
-        UsageError: the cut-offs are not two parts.
-        UnitError: a cut-off has no unit of length.
+        UsageError: the cut-offs are not two parts, or one has no unit of length.
     """
     short, long = (None, None) if waves is None else _cutoffs(waves)
     radians = None if degrees is None else float(np.radians(degrees))
@@ -90,7 +89,10 @@ def _cutoffs(text: str) -> tuple[float | None, float | None]:
             f"--filter is {text!r}; give lambda_s and lambda_c, for example "
             "'2.5 um:0.8 mm', '2.5 um:' or ':0.8 mm'"
         )
-    short, long = (parse_value(part, "length") if part else None for part in parts)
+    try:
+        short, long = (parse_value(part, "length") if part else None for part in parts)
+    except UnitError as error:
+        raise UsageError(f"--filter is {text!r}: {error}") from error
     return short, long
 
 

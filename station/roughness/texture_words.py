@@ -53,7 +53,8 @@ def _settings_words(measured: MeasuredTexture) -> str:
         parts.append(_index_words(kind, settings.long))
     if texture.heights.ndim == 1:
         length = engineering(texture.heights.size * texture.spacing[0], "m")
-        sections = f"{texture.sections} sections"
+        word = "section" if texture.sections == 1 else "sections"
+        sections = f"{texture.sections} {word}"
         parts.append(f"evaluation length {length} ({sections})")
     else:
         sides = (

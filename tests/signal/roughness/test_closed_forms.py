@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.special import ellipe, ndtri
+from scipy.special import ellipe, ndtr, ndtri
 
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 from jointbench.signal.roughness.texture_operators import surface_texture
@@ -149,18 +149,77 @@ def test_a_random_field_of_known_spectrum_and_distribution():
 
 
 def test_decay_lengths_of_crossed_waves():
-    """The shortest and longest way to 0.2 of an autocorrelation that is known."""
-    rows, columns = np.mgrid[:900, :900]
-    heights = np.sin(2 * np.pi * columns / 20) + np.sin(2 * np.pi * rows / 30)
+    """Way to 0.2 of the autocorrelation over a finite map, integrated in closed form.
+
+    Two points a lag t apart are both in the map over its side less t; the waves do not
+    fill that length with whole periods, which moves the way by 0.3 % of an endless map.
+    """
+    rows, columns = np.mgrid[:900, :900] + 0.5
+    k, m = 2 * np.pi / 20, 2 * np.pi / 30
+    heights = np.sin(k * columns) + np.sin(m * rows)
     found = parameters(1e-6 * heights, (1e-6, 1e-6))
+
+    def product(k, lag):
+        length = 900 - lag
+        ends = np.sin(2 * k * length + k * lag) - np.sin(k * lag)
+        return (np.cos(k * lag) - ends / (2 * k * length)) / 2
+
+    def mean(k, lag, start):
+        length = 900 - lag
+        return (np.cos(k * start) - np.cos(k * (start + length))) / (k * length)
+
     angle = np.linspace(0, np.pi / 2, 181)[:, None]
     r = np.linspace(0, 20, 4001)
-    acf = np.cos(2 * np.pi * r * np.cos(angle) / 20)
-    acf = (acf + np.cos(2 * np.pi * r * np.sin(angle) / 30)) / 2
+    x, y = r * np.cos(angle), r * np.sin(angle)
+    acf = product(k, x) + product(m, y)
+    acf += mean(k, x, 0) * mean(m, y, y) + mean(k, x, x) * mean(m, y, 0)
     lengths = r[(acf < 0.2).argmax(axis=1)]
-    # Products over a finite map are off by the share of a wave in it.
-    assert found["Sal"] == pytest.approx(1e-6 * lengths.min(), rel=3 * WITHIN)
-    assert found["Str"] == pytest.approx(lengths.min() / lengths.max(), rel=3 * WITHIN)
+    assert found["Sal"] == near(1e-6 * lengths.min())
+    assert found["Str"] == near(lengths.min() / lengths.max())
+
+
+def test_the_core_of_normal_heights():
+    """The equivalent line of the normal quantiles, its ends and its triangles."""
+    share = np.linspace(0.3, 0.7, 40_001)
+    central = -ndtri(share)
+    core = -np.polyfit(share, central, 1)[0]
+    first = ndtr(-core / 2)
+    peak = np.exp(-(core**2) / 8) / np.sqrt(2 * np.pi) - first * core / 2
+    normal = ndtri((np.arange(90_000) + 0.5) / 90_000)
+    found = parameters(np.random.default_rng(3).permutation(1e-6 * normal), (PITCH,))
+    assert found["Rk"] == near(1e-6 * core)
+    assert found["Rmrk1"] == near(first)
+    assert found["Rmrk2"] == near(1 - first)
+    assert found["Rpk"] == near(2e-6 * peak / first)
+    assert found["Rvk"] == near(2e-6 * peak / first)
+
+
+def test_small_waves_belong_to_the_element_of_their_neighbour():
+    """Waves of 1, 0.5 and 0.05 um in turn: the third is below 10 % of Rp."""
+    wave = (np.arange(12_000) + 0.37) / 200
+    size = np.array([1.0, 0.5, 0.05])[np.floor(wave).astype(int) % 3]
+    found = parameters(1e-6 * size * np.sin(2 * np.pi * wave), (PITCH,))
+    # 20 narrow and 19 wide elements from each end, and the cut one at neither.
+    assert found["Rsm"] == near(1e-6 * (100 * 20 + 200 * 19) / 39)
+    assert found["Rc"] == near(1.5e-6)
+
+
+@pytest.mark.parametrize("shape", [(3000,), (60, 90)])
+def test_a_plane_has_no_shape_of_its_distribution(shape):
+    """What is left of equal heights is rounding, not texture."""
+    heights = np.full(shape, 3e-6)
+    valid = all_valid(heights)
+    surface = (
+        Profile("flat", heights, PITCH, valid)
+        if len(shape) == 1
+        else Areal("flat", heights, (1e-6, 1e-6), valid)
+    )
+    settings = TextureSettings(5e-6, None)
+    values = texture_parameters(surface_texture(surface, settings)).values
+    letter = "R" if len(shape) == 1 else "S"
+    assert values[f"{letter}q"] == 0
+    for name in ("sk", "ku", "mrk1", "mrk2"):
+        assert values[letter + name] is None
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 90, 135])
@@ -187,3 +246,9 @@ def test_missing_points_do_not_move_a_map():
     )
     for name in ("Sa", "Sq", "Sal", "Sdq", "Sk", "Sz"):
         assert one[name] == pytest.approx(two[name], rel=5e-3), name
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_small_map_has_a_lay_though_bins_of_direction_are_empty(seed):
+    noise = 1e-22 * np.random.default_rng(seed).normal(size=(24, 36))
+    assert parameters(noise, (1e-6, 1e-6))["Std"] is not None

@@ -82,3 +82,12 @@ def test_a_short_profile_keeps_its_ends_and_says_how_many_sections_fit():
     assert "4 of 5 sections" in " ".join(texture.remarks)
     with pytest.raises(UsageError, match="shorter than one section"):
         surface_texture(rough(8, points=400), SETTINGS)
+
+
+def test_steps_of_a_parameter_do_not_shift_its_interval():
+    """Material ratios step with the central region: noise adds scatter, no shift."""
+    found = measured_texture(rough(9, noise=10e-9), SETTINGS)
+    for name in ("Rmrk1", "Rmrk2"):
+        assert found.named(name).bias == 0
+        assert dict(found.named(name).parts)["noise"] > 0
+    assert found.named("Rdq").bias > 0
