@@ -224,6 +224,8 @@ def _densest_direction(
     centre = (int(np.argmax(around)) + 0.5) * np.pi / _DIRECTION_BINS
     apart = (angle - centre + np.pi / 2) % np.pi - np.pi / 2
     top = np.abs(apart) < np.pi / _DIRECTION_BINS
+    if not weight[top].any():  # one single spike: equal power in all directions
+        return float((centre + np.pi / 2) % np.pi)
     radius = float(np.average(far[used][top], weights=weight[top]))
     near = np.abs(apart) < max(np.pi / _DIRECTION_BINS, _LOBE * line / radius)
     wave = centre + float(np.average(apart[near], weights=weight[near]))
