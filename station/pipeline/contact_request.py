@@ -218,7 +218,7 @@ def _parse_preloads(
 def _load(text: str) -> float:
     value = parse_value(text, "force")
     if not value > 0:
-        raise BadData(f"--load is {text!r}; a preload must be positive, e.g. '4 kN'")
+        raise BadData(f"preload is {value:g} N, it must be positive; give e.g. '4 kN'")
     return value
 
 

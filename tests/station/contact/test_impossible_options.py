@@ -42,7 +42,7 @@ def test_a_pressure_map_needs_points() -> None:
 
 def test_loads_are_positive_and_spreads_not_negative() -> None:
     """One line names the option."""
-    with pytest.raises(BadData, match="--load is '0 N'"):
+    with pytest.raises(BadData, match="preload is 0 N"):
         parse_request(replace(CONTACT, load=["0 N"]))
     with pytest.raises(BadData, match="--modulus-sd"):
         parse_request(replace(CONTACT, modulus_sd="-3 %"))
