@@ -229,6 +229,8 @@ def _densest_direction(
     # The three bins of the mean: the middle one may be empty.
     half = 1.5 * np.pi / _DIRECTION_BINS * (1 + 1e-9)
     top = np.abs(apart) <= half
+    if not weight[top].any():  # one single spike: equal power in all directions
+        return float((centre + np.pi / 2) % np.pi)
     radius = float(np.average(far[used][top], weights=weight[top]))
     near = np.abs(apart) <= max(half, _LOBE * line / radius)
     wave = centre + float(np.average(apart[near], weights=weight[near]))

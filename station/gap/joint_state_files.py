@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Read a joint over its preload from TOML, a table of states, or identifications."""
 
-import csv
-import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from pydantic import ValidationError
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.quoting import named
-from jointbench.acquisition.file_access.text_files import decode, read_bytes
 from jointbench.analysis.gap.contact_bench.joint_states import (
     QUANTITIES,
     JointData,
@@ -22,9 +18,10 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     JointStates,
 )
 from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
-from jointbench.station.files.toml_file import first_problem, read_toml
+from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
 from jointbench.station.gap.identified_values import identified_value
+from jointbench.station.gap.joint_state_tables import read_covariance, read_state_table
 from jointbench.station.gap.preload_law_tables import contact_law, modulus_of
 from jointbench.station.schemas.joint_states_model import (
     BodiesTable,
@@ -33,6 +30,8 @@ from jointbench.station.schemas.joint_states_model import (
     JointStateTable,
 )
 
+_MOST_STATES = 200
+"""States of one joint: the covariance of all values is held and factored at once."""
 CONE_ANGLE = math.radians(30.0)
 """Half angle of the pressure cone of a bolt: 25 to 35 degrees in VDI 2230."""
 
@@ -78,6 +77,11 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
     states = model.states
     if model.table is not None:
         states = read_state_table(path.parent / model.table)
+    if len(states) > _MOST_STATES:
+        raise BadData(
+            f"{named(path)} names {len(states)} states, at most {_MOST_STATES} are "
+            "judged together; average repeated measurements"
+        )
     values = _values(states, path.parent)
     if not values:
         raise BadData(f"{named(path)} holds no measured value; add kn = '6e7 N/m' ...")
@@ -86,53 +90,9 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
         path.stem,
         facts,
         _states(states),
-        _rows(values, states, _covariance(path, model, values)),
+        _rows(values, states, _covariance(path, model, len(values))),
     )
     return data, contact_law(model.law, model.bodies, facts)
-
-
-def read_state_table(path: Path) -> tuple[JointStateTable, ...]:
-    """Read states from a CSV file with a header of keys and units.
-
-    A column is ``torque:N m``, ``branch``, ``assembly``, ``kn:N/m``, ``kn_sd:%`` and so
-    on: the keys are those of a state in TOML, an empty cell is not measured.
-
-    Args:
-        path: of the table.
-
-    Raises:
-        BadData: a column or cell cannot be used.
-    """
-    text, _ = decode(read_bytes(path), path)
-    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    reader = csv.reader(io.StringIO("\n".join(lines)))
-    header = [cell.strip() for cell in next(reader, [])]
-    keys = [cell.partition(":")[0] for cell in header]
-    units = [cell.partition(":")[2] for cell in header]
-    found = []
-    for number, cells in enumerate(reader, 1):
-        content = {
-            key: _cell(cell.strip(), unit)
-            for key, cell, unit in zip(keys, cells, units, strict=False)
-            if cell.strip()
-        }
-        try:
-            found.append(JointStateTable.model_validate(content))
-        except ValidationError as error:
-            problem = first_problem(error, JointStateTable)
-            raise BadData(f"{named(path)}, row {number}: {problem}") from error
-    if not found:
-        raise BadData(
-            f"{named(path)} holds no state; write one per line below its header"
-        )
-    return tuple(found)
-
-
-def _cell(cell: str, unit: str) -> str | int:
-    """Return a cell as TOML would hold it: a word, a count, a number with its unit."""
-    if unit:
-        return f"{cell} {unit}"
-    return int(cell) if cell.isdigit() else cell
 
 
 def _states(states: tuple[JointStateTable, ...]) -> JointStates:
@@ -184,10 +144,11 @@ def _rows(
         for k, state in enumerate(states):
             for pair, value in state.correlation.items():
                 one, _, other = pair.partition("_")
-                if (k, one) not in place or (k, other) not in place:
+                if one == other or not {(k, one), (k, other)} <= place.keys():
                     raise BadData(
                         f"state {k + 1}: correlation {pair!r} names values that it "
-                        "does not have; write e.g. correlation = { kn_kt = 0.4 }"
+                        "does not have, or one twice; write e.g. correlation = "
+                        "{ kn_kt = 0.4 }"
                     )
                 i, j = place[k, one], place[k, other]
                 root = math.sqrt(covariance[i, i] * covariance[j, j])
@@ -202,27 +163,11 @@ def _rows(
 
 
 def _covariance(
-    path: Path, model: JointStatesModel, values: list[MeasuredValue]
+    path: Path, model: JointStatesModel, n_values: int
 ) -> FloatArray | None:
-    """Return the covariance of the logarithms that a file states, if one is named."""
     if model.covariance is None:
         return None
-    source = path.parent / model.covariance
-    text, _ = decode(read_bytes(source), source)
-    try:
-        rows = [[float(c) for c in line.split(",")] for line in text.split() if line]
-        matrix = np.array(rows)
-    except ValueError as error:
-        raise BadData(
-            f"{named(source)} is no table of numbers; write one row of the covariance "
-            "per line, separated by commas"
-        ) from error
-    if matrix.shape != (len(values), len(values)):
-        raise BadData(
-            f"{named(source)} has the shape {matrix.shape}; the file has {len(values)} "
-            "values, so it must have as many rows and columns, in their order"
-        )
-    return matrix
+    return read_covariance(path.parent / model.covariance, n_values)
 
 
 def _facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:

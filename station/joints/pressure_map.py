@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.records.surfaces import Areal
@@ -15,6 +15,7 @@ from jointbench.analysis.contact.half_space.contact_patch import (
     contact_patch,
 )
 from jointbench.analysis.contact.half_space.mated_heights import (
+    LEAST_POINTS,
     MatedHeights,
     mated_heights,
 )
@@ -61,6 +62,15 @@ def run_pressure_map(given: PressureMapOptions) -> tuple[ContactPatch, ...]:
         BadData: a file cannot be read, or the maps have too few points in common.
     """
     check_outputs(given.maps, [given.json, given.plot])
+    if given.points < LEAST_POINTS:
+        raise UsageError(f"--points is {given.points}; give at least {LEAST_POINTS}")
+    modulus = _positive("--modulus", parse_value(given.modulus, "pressure"))
+    hardness = _positive("--hardness", parse_hardness(given.hardness))
+    cutoff = _positive("--cutoff", parse_value(given.cutoff, "length"))
+    pressures = [
+        _positive("--pressure", parse_value(text, "pressure"))
+        for text in given.pressure
+    ]
     maps = _maps(given)
     mated = mated_heights(
         maps[0],
@@ -68,18 +78,13 @@ def run_pressure_map(given: PressureMapOptions) -> tuple[ContactPatch, ...]:
         turn=given.turn,
         most_points=given.points,
     )
-    modulus = parse_value(given.modulus, "pressure")
-    hardness, cutoff = (
-        parse_hardness(given.hardness),
-        parse_value(given.cutoff, "length"),
-    )
     found = []
-    for text in given.pressure:
+    for text, pressure in zip(given.pressure, pressures, strict=True):
         with working(f"solving the contact at {text}"):
             found.append(
                 contact_patch(
                     mated,
-                    parse_value(text, "pressure") * mated.area,
+                    pressure * mated.area,
                     modulus=modulus,
                     hardness=hardness,
                     cutoff=cutoff,
@@ -91,6 +96,12 @@ def run_pressure_map(given: PressureMapOptions) -> tuple[ContactPatch, ...]:
         write_report(_report(mated, found, lines), given.plot)
     write_json(given.json, _plain(maps, mated, found, lines))
     return tuple(found)
+
+
+def _positive(option: str, value: float) -> float:
+    if not value > 0:
+        raise BadData(f"{option} is {value:g}; it must be positive")
+    return value
 
 
 def _maps(given: PressureMapOptions) -> list[Areal]:

@@ -10,7 +10,7 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_
 from jointbench.analysis.gap.response.threads import side_by_side
 from jointbench.station.gap.gap_inputs import Examined, examine
 from jointbench.station.gap.gap_options import gap_request
-from jointbench.station.library.measurements import Files, Measurement
+from jointbench.station.library.measurements import Files, Measurement, paths_of
 from jointbench.station.library.result_view import ResultView, Shown
 from jointbench.station.report.gap_report import gap_report
 from jointbench.station.report.gap_sentences import headline
@@ -109,7 +109,8 @@ def gap(
         used = model or source.model
         files: Sequence[str | Path] = source.files
     else:
-        files = [source] if isinstance(source, str | Path) else list(source)
+        paths_of(source)  # refuses what names no file; a URL stays text
+        files = [source] if isinstance(source, str | Path) else source
     wanted = gap_request(
         model=None if used is None else Path(used),
         preload=preload,

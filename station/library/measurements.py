@@ -206,7 +206,11 @@ def paths_of(files: Files) -> tuple[Path, ...]:
     Raises:
         UsageError: none is given.
     """
-    given = [files] if isinstance(files, str | Path) else list(files)
+    given = [files] if isinstance(files, str | Path) else files
+    if not isinstance(given, Sequence) or not all(
+        isinstance(one, str | Path) for one in given
+    ):
+        raise UsageError(f"{files!r} is no file name; give a path, or a list of paths")
     if not given:
         raise UsageError("no file is given; name at least one")
     return tuple(Path(one) for one in given)

@@ -61,8 +61,8 @@ def _events(session: Path) -> tuple[tuple[Stamped, ...], bool]:
     log, live = read_log(session)
     if not log and not live:
         raise FormatError(
-            f"'{session}' holds no events: it was imported, or recorded by an earlier "
-            "version; `jointbench inspect` lists its content"
+            f"'{session}' holds no events: it was imported, or recorded without the "
+            "steps of 'jointbench measure'; `jointbench inspect` lists its content"
         )
     return tuple(from_log(log)), live
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from jointbench.acquisition.basics.errors import UnitError, UsageError
+from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.basics.units import STANDARD_GRAVITY, parse_value
 from jointbench.analysis.contact.contact_case import ContactConditions
 from jointbench.analysis.contact.damping import (
@@ -85,7 +85,7 @@ def parse_request(given: ContactOptions) -> ContactRequest:
     )
     conditions = ContactConditions(
         material,
-        hardness_sd=hard * parse_value(given.hardness_sd, "ratio"),
+        hardness_sd=hard * _spread("--hardness-sd", given.hardness_sd),
         friction_factor_sd=given.friction_factor_sd,
         damping=_parse_damping(
             given.mass, given.frequency, given.loss_form, given.loss_convention
@@ -93,7 +93,8 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         tangential_load=parse_value(given.tangential_load, "force"),
         friction=given.friction,
         nominal_area=given.nominal_area,
-        modulus_sd=material.effective_modulus * parse_value(given.modulus_sd, "ratio"),
+        modulus_sd=material.effective_modulus
+        * _spread("--modulus-sd", given.modulus_sd),
     )
     return ContactRequest(
         models,
@@ -199,7 +200,7 @@ def _parse_preloads(
     if targets:
         return ()
     if loads:
-        return tuple(Preload(parse_value(text, "force"), 0.0) for text in loads)
+        return tuple(Preload(_load(text), 0.0) for text in loads)
     if diameter is None:
         raise UsageError("--torque needs --bolt-diameter, for example '16 mm'")
     return tuple(
@@ -212,6 +213,20 @@ def _parse_preloads(
         )
         for text in torques
     )
+
+
+def _load(text: str) -> float:
+    value = parse_value(text, "force")
+    if not value > 0:
+        raise BadData(f"preload is {value:g} N, it must be positive; give e.g. '4 kN'")
+    return value
+
+
+def _spread(option: str, text: str) -> float:
+    value = parse_value(text, "ratio")
+    if value < 0:
+        raise BadData(f"{option} is {text!r}; a standard deviation cannot be negative")
+    return value
 
 
 def _parse_damping(

@@ -26,6 +26,7 @@
     kn_sd = "3 %"
 """
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -49,13 +50,21 @@ _Value = tuple[float, bool]
 def _area(value: object) -> object:
     """Return an area of text such as "0.12 m^2" or "1200 cm^2" [m^2]."""
     if not isinstance(value, str):
-        return value
+        raise ValueError(  # noqa: TRY004
+            f"write the area with its unit, as text: '{value} m^2'"
+        )
     number, _, unit = value.strip().partition(" ")
     factors = {"m^2": 1.0, "m2": 1.0, "cm^2": 1e-4, "cm2": 1e-4}
     factors |= {"mm^2": 1e-6, "mm2": 1e-6}
     if unit not in factors:
         raise ValueError(f"'{unit}' is no unit of area; use m^2, cm^2 or mm^2")
-    return float(number) * factors[unit]
+    try:
+        area = float(number) * factors[unit]
+    except ValueError as error:
+        raise ValueError(f"'{number}' is no number; write e.g. '0.12 m^2'") from error
+    if not math.isfinite(area):
+        raise ValueError(f"an area of {number} {unit} is impossible; give its size")
+    return area
 
 
 def _measured(kind: str) -> BeforeValidator:

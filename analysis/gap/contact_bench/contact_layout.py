@@ -78,7 +78,7 @@ class _Coordinates:
         self.names.append(name)
         self.units.append(unit)
         self.nominal.append(value)
-        self.sd.append(sd)
+        self.sd.append(max(sd, 1e-6))  # what is exactly known stays in the fit
         return len(self.names) - 1
 
 
@@ -93,7 +93,7 @@ def contact_layout(
     """
     rows, facts = _Coordinates([], [], [], []), data.facts
     for p in parameters:
-        rows.add(p.name, p.unit, p.value, max(p.log_sd, 1e-6))
+        rows.add(p.name, p.unit, p.value, p.log_sd)
     factor = rows.add("law_factor", "-", 1.0, CONTACT.law_factor_sd)
     rows.add("law_power", "-", 1.0, CONTACT.law_power_sd)
     ratio = np.full(len(QUANTITIES), -1)

@@ -1,0 +1,55 @@
+"""Wrong arguments of the library, and contact of surfaces without a fractal law."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import jointbench as jb
+from jointbench.acquisition.basics.errors import UsageError
+
+STEEL = {"modulus": "29 GPa", "hardness": "1.5 GPa"}
+
+
+def test_what_names_no_file_is_refused() -> None:
+    """Numbers, None, and empty lists."""
+    for wrong in (None, 3, [3], b"x", []):
+        with pytest.raises(UsageError, match="no file"):
+            jb.open(wrong)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="no file"):
+        jb.gap([])
+
+
+def test_quantities_without_unit_are_refused() -> None:
+    """A bare number names its argument."""
+    with pytest.raises(UsageError, match="load is 1000"):
+        jb.contact(**STEEL, load=1000)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="roughness is 1e-09"):
+        jb.contact(**STEEL, load="1 kN", dimension=1.5, roughness=1e-9)
+    with pytest.raises(UsageError, match="no option colour"):
+        jb.contact(**STEEL, load="1 kN", colour=1)
+
+
+def test_a_short_profile_has_the_laws_of_its_spectrum(tmp_path: Path) -> None:
+    """No fractal law applies to 64 points; measured laws have rows."""
+    rng = np.random.default_rng(3)
+    heights = np.cumsum(rng.standard_normal(64)) * 0.1
+    path = tmp_path / "line.csv"
+    path.write_text(
+        "".join(f"{k},{z:.6f}\n" for k, z in enumerate(heights)), encoding="utf-8"
+    )
+    found = jb.contact(
+        **STEEL,
+        surface=path,
+        columns="x:um,z:um",
+        nominal_area=1e-4,
+        load=["100 N", "1 kN"],
+    )
+    assert not found.points
+    assert found.measured is not None
+    assert "persson" in str(found)
+    assert "<svg" in found.view.html()
+    data = pytest.importorskip("xarray") and found.to_xarray()
+    ours = data.normal_stiffness.values[data.law.values == "persson"]
+    curve = next(one for one in found.measured.at if one.law == "persson")
+    np.testing.assert_allclose(ours, curve.stiffness * 1e-4)
