@@ -10,8 +10,8 @@
     print(modes)                    # natural frequencies and damping with intervals
     modes.to_xarray()               # labelled arrays with units
 
-Each function takes files or records and returns a record; nothing is printed and no
-file is written unless a path is given. Errors are those of
+Each function takes files or records and returns a record; nothing is printed, and
+only `record`, `process` and `report` write files. Errors are those of
 `jointbench.acquisition.basics.errors`: one line with the cause and a remedy. The
 functions load their modules at the first call, so that the import costs nothing.
 """

@@ -35,7 +35,6 @@ from jointbench.signal.band_limited.map_likelihood import (
 )
 from jointbench.signal.band_limited.map_models import MapModels, again, map_models
 from jointbench.signal.band_limited.map_moments import (
-    in_metres,
     longest_map_wave,
     measured_map_moments,
     ring_moments,
@@ -49,6 +48,7 @@ from jointbench.signal.band_limited.map_parameters import (
     ROLL_OFF,
 )
 from jointbench.signal.band_limited.map_sample import map_sample
+from jointbench.signal.band_limited.moment_units import in_metres
 from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
 )
@@ -302,7 +302,7 @@ def _moments(weighed: _Weighed) -> RoughnessMoments | None:
     parts = weighed.estimate(
         lambda at: np.sqrt(ring_moments(likelihood.model(at), *ends))
     )
-    return in_metres(sample, (short, long), parts, modelled=True)
+    return in_metres(sample.pitch, sample.scale, (short, long), parts, modelled=True)
 
 
 def _lay(weighed: _Weighed, *, saturated: bool) -> SurfaceLay:

@@ -7,6 +7,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.band_limited.band_records import Interval95, RoughnessMoments
 from jointbench.signal.band_limited.lay_spectrum import LaySpectrum
 from jointbench.signal.band_limited.map_sample import MapSample
+from jointbench.signal.band_limited.moment_units import in_metres
 from jointbench.signal.band_limited.roughness_moments import RESOLVED
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 
@@ -94,33 +95,10 @@ def measured_map_moments(sample: MapSample) -> RoughnessMoments | None:
         reach = np.exp(0.5 * NORMAL_97_5 * spread / total)
         value = float(np.sqrt(total))
         parts.append(Interval95(value, float(value / reach), float(value * reach)))
-    return in_metres(sample, (short, long), parts, modelled=False)
+    return in_metres(sample.pitch, sample.scale, (short, long), parts, modelled=False)
 
 
 def _ordinates(sample: MapSample) -> float:
     """Return ordinates over independent ones: all fill the half plane."""
     rows, columns = sample.shape
     return float(max(1.0, 0.5 * rows * columns / sample.count.sum()))
-
-
-def in_metres(
-    sample: MapSample,
-    waves: tuple[float, float],
-    parts: list[Interval95],
-    *,
-    modelled: bool,
-) -> RoughnessMoments:
-    """Return moments in units of the pitch and the scale as those of the surface."""
-    pitch, scale = sample.pitch, sample.scale
-    factors = (scale, scale / pitch, scale / pitch**2)
-    height, slope, curvature = (
-        part.times(factor) for part, factor in zip(parts, factors, strict=True)
-    )
-    return RoughnessMoments(
-        shortest=waves[0] * pitch,
-        longest=waves[1] * pitch,
-        height=height,
-        slope=slope,
-        curvature=curvature,
-        modelled=modelled,
-    )

@@ -11,6 +11,7 @@ from jointbench.signal.band_limited.band_records import (
 )
 from jointbench.signal.band_limited.line_sample import LineSample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
+from jointbench.signal.band_limited.moment_units import in_metres
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
 from jointbench.signal.band_limited.weighted_draws import WeightedDraws
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
@@ -90,7 +91,7 @@ def modelled_moments(
         draws.estimate(np.sqrt(values[:, k]), float(np.sqrt(at_best[k])))
         for k in range(3)
     ]
-    return _in_metres(sample, (short, long), parts, modelled=True)
+    return in_metres(sample.pitch, sample.scale, (short, long), parts, modelled=True)
 
 
 def measured_moments(sample: LineSample) -> RoughnessMoments | None:
@@ -112,7 +113,7 @@ def measured_moments(sample: LineSample) -> RoughnessMoments | None:
         reach = np.exp(0.5 * NORMAL_97_5 * spread)
         value = float(np.sqrt(total))
         parts.append(Interval95(value, float(value / reach), float(value * reach)))
-    return _in_metres(sample, (short, long), parts, modelled=False)
+    return in_metres(sample.pitch, sample.scale, (short, long), parts, modelled=False)
 
 
 def measured_density(sample: LineSample) -> LineDensity | None:
@@ -167,26 +168,4 @@ def _whole_spectrum(
         np.concatenate([omega[below], sample.omega]),
         np.concatenate([power[below], sample.power]),
         np.concatenate([count[below], sample.count]),
-    )
-
-
-def _in_metres(
-    sample: LineSample,
-    waves: tuple[float, float],
-    parts: list[Interval95],
-    *,
-    modelled: bool,
-) -> RoughnessMoments:
-    pitch, scale = sample.pitch, sample.scale
-    factors = (scale, scale / pitch, scale / pitch**2)
-    height, slope, curvature = (
-        part.times(factor) for part, factor in zip(parts, factors, strict=True)
-    )
-    return RoughnessMoments(
-        shortest=waves[0] * pitch,
-        longest=waves[1] * pitch,
-        height=height,
-        slope=slope,
-        curvature=curvature,
-        modelled=modelled,
     )

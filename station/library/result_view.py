@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """How a result shows itself: as text, and as HTML in a notebook."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -43,15 +44,15 @@ class ResultView:
         )
 
 
-class Shown:
+class Shown(ABC):
     """A result that prints its `view` and displays it in a notebook."""
 
     __slots__ = ()
 
     @property
+    @abstractmethod
     def view(self) -> ResultView:
         """Title, table, remarks and plots of the result."""
-        raise NotImplementedError
 
     def __str__(self) -> str:
         """Return the result as text."""

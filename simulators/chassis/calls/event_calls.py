@@ -5,6 +5,7 @@
 # ruff: noqa: N802
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -119,7 +120,7 @@ def _forget(task: SimulatedTask, name: str) -> None:
     task.streams.pop(name, None)
 
 
-class _Events:
+class _Events(ABC):
     """Events of one registration; a new start of the task counts from zero."""
 
     name = ""
@@ -138,9 +139,9 @@ class _Events:
         self._seen = task.acquisition
         return fresh
 
+    @abstractmethod
     def new(self, task: SimulatedTask) -> Iterator[Any]:
         """Yield the events since the last call."""
-        raise NotImplementedError
 
 
 class _Every(_Events):
