@@ -19,7 +19,7 @@ from jointbench.analysis.structures.exchange.joint_pieces import (
     JointPiece,
     PieceRead,
 )
-from jointbench.analysis.structures.exchange.slip_law import SpeedLaw, SliderLaw
+from jointbench.analysis.structures.exchange.slip_law import SliderLaw, SpeedLaw
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.joint_files.export_run import JointExport

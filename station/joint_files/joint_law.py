@@ -6,8 +6,8 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import FormatError, UsageError
 from jointbench.analysis.structures.exchange.slip_law import (
-    SpeedLaw,
     SliderLaw,
+    SpeedLaw,
     law_of,
 )
 from jointbench.analysis.structures.matrices.parts import DIRECTIONS

@@ -13,7 +13,7 @@ from scipy import sparse
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.analysis.structures.exchange.joint_pieces import JointPiece, PieceRead
-from jointbench.analysis.structures.exchange.slip_law import SpeedLaw, SliderLaw
+from jointbench.analysis.structures.exchange.slip_law import SliderLaw, SpeedLaw
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 
 # Far above the numbers of a model that the file is read into.

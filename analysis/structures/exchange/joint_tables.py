@@ -13,7 +13,7 @@ from jointbench.analysis.structures.exchange.joint_pieces import (
     COMPONENTS,
     JointPiece,
 )
-from jointbench.analysis.structures.exchange.slip_law import SpeedLaw, SliderLaw
+from jointbench.analysis.structures.exchange.slip_law import SliderLaw, SpeedLaw
 
 _UPPER = np.triu_indices(6)
 _PAIRS = [f"{COMPONENTS[i]}*{COMPONENTS[j]}" for i, j in zip(*_UPPER, strict=True)]
