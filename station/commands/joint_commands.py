@@ -9,6 +9,7 @@ import typer
 from jointbench.station.commands.shared_options.input_options import Preload, Sessions
 from jointbench.station.commands.shared_options.joint_options import (
     Cache,
+    ChainSurfaces,
     ContactSurfaces,
     GapSources,
     Model,
@@ -94,6 +95,7 @@ def gap_command(
             "with those that the explanations predict; 1 to 2 s more.",
         ),
     ] = False,
+    surface: ChainSurfaces = None,
     report: HtmlReport = None,
     json: Json = None,
     debug: Debug = False,
@@ -107,6 +109,7 @@ def gap_command(
     Examples:
         jointbench gap session.h5 --model bench.toml --report gap.html
         jointbench gap hits.h5 --model sheet.json
+        jointbench gap session.h5 --model bench.toml --surface a.csv --surface b.csv
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
     from jointbench.station.commands.gap_command import run_gap
@@ -119,6 +122,7 @@ def gap_command(
         without=without,
         effects=[*(effects or []), *sorted(names_in(with_))],
         curves=curves,
+        surfaces=surface or [],
         report=report,
         json_target=json,
     )

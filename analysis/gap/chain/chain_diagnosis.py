@@ -12,6 +12,7 @@ from jointbench.analysis.gap.chain.several_causes import (
     SeveralCauses,
     add_causes,
     causes_of,
+    explains_plainly,
 )
 from jointbench.analysis.gap.contact_bench.contact_bench import (
     ContactBench,
@@ -23,6 +24,7 @@ from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
     too_few,
 )
 from jointbench.analysis.gap.diagnosis.contact_search import search_contact
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 
 Progress = Callable[[str], None]
@@ -84,14 +86,28 @@ def diagnose_chain(
         raise TypeError("the search must return a bench of the type it was given")
     contact = conclude_contact(outcome, final)
     several = None
-    if contact.found.verdict is Finding.NAMED:
-        several = causes_of(final, outcome.best, outcome.acceptance)
-    elif contact.found.verdict is Finding.UNKNOWN and not too_few(data):
-        several = add_causes(outcome, progress)
-    found = ChainDiagnosis(
-        chain, location, contact, several, Finding.NONE, (), "", ""
-    )
+    if not outcome.base_acceptance.passed and not too_few(data):
+        several = _causes(outcome, final, contact, progress)
+    found = ChainDiagnosis(chain, location, contact, several, Finding.NONE, (), "", "")
     return _concluded(found)
+
+
+def _causes(
+    outcome: SearchOutcome,
+    bench: ContactBench,
+    contact: ContactDiagnosis,
+    progress: Progress,
+) -> SeveralCauses | None:
+    """Return the causes at the joint; more than one where one leaves too much."""
+    named = contact.found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
+    if not (named and explains_plainly(bench, outcome.best)):
+        found = add_causes(outcome, progress)
+        if found is not None:
+            return found
+    if not named:
+        return None
+    near = [f for f in outcome.level if f is not outcome.best]
+    return causes_of(bench, outcome.best, outcome.acceptance, near)
 
 
 def _concluded(found: ChainDiagnosis) -> ChainDiagnosis:
@@ -169,7 +185,9 @@ def _verdict(found: ChainDiagnosis, link: ChainLink) -> Finding:
         own_structure = found.chain.structure
         passed = own_structure.before.test.passed
         return Finding.UNKNOWN if passed else own_structure.finding
-    return Finding.NAMED if found.several else found.contact.found.verdict
+    if found.several is None:
+        return found.contact.found.verdict
+    return Finding.AMBIGUOUS if found.several.rivals else Finding.NAMED
 
 
 def _names(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> tuple[str, ...]:
@@ -199,17 +217,42 @@ def _basis(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> str:
         elif link is ChainLink.STRUCTURE:
             words.append(found.chain.structure.reason)
         elif found.several is not None and len(found.several.causes) > 1:
-            names = ", ".join(cause.name for cause in found.several.causes)
-            words.append(f"{names} together explain the joint")
+            words.append(_together(found.several))
         else:
             words.append(found.contact.found.reason)
     return "; ".join(words)
 
 
+def _together(several: SeveralCauses) -> str:
+    """Return the causes that explain the joint together, and their rivals."""
+    sets = [tuple(cause.name for cause in several.causes), *several.rivals]
+    words = " or ".join(" + ".join(one) for one in sets)
+    dof = several.bench.blocks.dof
+    return f"{words}: chi2 {several.fit.cost:.1f} for {dof} values"
+
+
+def _separating(several: SeveralCauses) -> str:
+    """Return the experiments that separate sets of causes that fit equally well."""
+    effects = {c.effect.name: c.effect for c in several.bench.candidates}
+    own = {cause.name for cause in several.causes}
+    steps: list[str] = []
+    for rival in several.rivals:
+        for name in own - set(rival):
+            for other in set(rival) - own:
+                step = effects[name].separates.get(other)
+                step = step or effects[other].separates.get(name)
+                if step is not None and step not in steps:
+                    steps.append(step)
+    return "; or ".join(steps)
+
+
 def _experiment(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> str:
+    contact = found.contact.found.experiment
+    if found.several is not None and found.several.rivals:
+        contact = _separating(found.several) or contact
     steps = {
         ChainLink.SURFACE: found.chain.surface.experiment,
         ChainLink.STRUCTURE: found.chain.structure.experiment,
-        ChainLink.CONTACT: found.contact.found.experiment,
+        ChainLink.CONTACT: contact,
     }
     return "; ".join(dict.fromkeys(steps[one] for one in links if steps[one]))

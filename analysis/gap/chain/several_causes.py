@@ -10,9 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.chain.chain_settings import CHAIN
 from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
+from jointbench.analysis.gap.contact_bench.held_out_torques import (
+    HeldOutTorques,
+    hold_out_torques,
+)
 from jointbench.analysis.gap.diagnosis.contact_search import accept_contact
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
@@ -57,6 +62,7 @@ class SeveralCauses:
         rest: factor of what the base took up: inputs of the law, assemblies.
         measured: stiffness over that of the law with nominal inputs [-].
         reference: index of the state at which the factors hold.
+        held: each torque predicted from the others.
         rivals: other sets of effects that explain it equally well, in words.
     """
 
@@ -67,6 +73,7 @@ class SeveralCauses:
     rest: float
     measured: float
     reference: int
+    held: HeldOutTorques
     rivals: tuple[tuple[str, ...], ...]
 
     @property
@@ -93,7 +100,7 @@ def add_causes(outcome: SearchOutcome, progress: Progress) -> SeveralCauses | No
     for _ in range(1, CHAIN.most_causes):
         fits = _one_more(bench, fits[: CHAIN.pair_fits], progress)
         judged = [(f, _accepted(bench, f, base)) for f in fits[: CHAIN.pair_fits]]
-        passed = [(f, one) for f, one in judged if one.passed]
+        passed = [(f, o) for f, o in judged if o.passed and explains_plainly(bench, f)]
         if passed:
             limit = score(bench, passed[0][0]) + bench.policy.rival_score
             near = [f for f, _ in passed[1:] if score(bench, f) < limit]
@@ -102,7 +109,7 @@ def add_causes(outcome: SearchOutcome, progress: Progress) -> SeveralCauses | No
 
 
 def causes_of(
-    bench: ContactBench, fit: Fit, acceptance: Acceptance
+    bench: ContactBench, fit: Fit, acceptance: Acceptance, near: list[Fit]
 ) -> SeveralCauses:
     """Return the factors of the effects of a fit that was accepted.
 
@@ -110,13 +117,12 @@ def causes_of(
         bench: of the fit.
         fit: with one effect or several.
         acceptance: of the fit.
+        near: fits that explain the joint equally well.
     """
-    return _explained(bench, fit, acceptance, [])
+    return _explained(bench, fit, acceptance, near)
 
 
-def _one_more(
-    bench: ContactBench, fits: list[Fit], progress: Progress
-) -> list[Fit]:
+def _one_more(bench: ContactBench, fits: list[Fit], progress: Progress) -> list[Fit]:
     """Return the fits with one effect more, best score first."""
     found: dict[frozenset[str], Fit] = {}
     for fit in fits:
@@ -146,6 +152,19 @@ def _fitted(bench: ContactBench, fit: Fit, both: tuple[Candidate, ...]) -> Fit:
     ]
     best = min(tried, key=lambda f: f.cost)
     return minimise(problem, best.x, FULL, iterations=CONTACT.descent_steps)
+
+
+def explains_plainly(bench: ContactBench, fit: Fit) -> bool:
+    """Return whether the cost of a fit is within noise and priors alone.
+
+    A single effect may leave a share of what the base leaves, because its formula is
+    not the physics; where that share is large, a second effect may explain it.
+
+    Args:
+        bench: of the fit.
+        fit: with or without effects.
+    """
+    return fit.cost <= chi2_limit(CONTACT.fit_chance, max(bench.blocks.dof, 1))
 
 
 def _accepted(bench: ContactBench, fit: Fit, base: Fit) -> Acceptance:
@@ -182,6 +201,7 @@ def _explained(
         base / nominal,
         float(np.exp(rows.value[own])) / nominal,
         reference,
+        hold_out_torques(bench, fit),
         tuple(tuple(sorted(c.effect.name for c in f.candidates)) for f in near),
     )
 

@@ -90,7 +90,9 @@ def measured_preload_law(
     step = CONTACT.law_step
     stiffer = replace(case, modulus=case.modulus * np.exp(step))
     by_modulus = (_log_stiffness(stiffer, chosen, grid)[0] - drawn[0]) / step
-    coarser = replace(case, surface=case.surface.without_below(2 * case.surface.shortest))
+    coarser = replace(
+        case, surface=case.surface.without_below(2 * case.surface.shortest)
+    )
     by_cut = (_log_stiffness(coarser, chosen, grid)[0] - drawn[0]) / np.log(2.0)
     spread = float(np.sqrt(np.log1p((case.modulus_sd / case.modulus) ** 2)))
     parameters = (
