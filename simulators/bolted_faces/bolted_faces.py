@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stiffness of two bodies that bolts press together, from their own faces.
+"""Stiffness of two bodies that bolts press together, from their own surfaces.
 
 The pressure under the bolts is that of thick layers, the bodies are elastic half-spaces
 around the contact, the waviness is pressed flat as far as the bolts do it, and the
@@ -14,7 +14,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.bolted_faces.rough_layer import RoughLayer
 
 GRID = 64
-"""Cells along one side of a face."""
+"""Cells along one side of a surface."""
 _MOST_STEPS = 60
 _LEAST = 1e-9
 """Pressure over the mean one below which a cell bears nothing [-]."""
@@ -22,10 +22,10 @@ _LEAST = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaceDesign:
-    """Two bodies with square faces on four bolts.
+    """Two bodies with square surfaces on four bolts.
 
     Attributes:
-        side: of the faces [m].
+        side: of the surfaces [m].
         thickness: of each body at the bolts [m].
         bolt_place: of the bolts from both centre lines [m].
         bolt_diameter: [m].
@@ -33,7 +33,7 @@ class FaceDesign:
         bolt_length: free length of a bolt [m].
         bolt_modulus: of the bolts [Pa].
         modulus: E* of both bodies [Pa].
-        wave_height: rms height of the waviness of both faces [m].
+        wave_height: rms height of the waviness of both surfaces [m].
         wave_lengths: shortest and longest wave of it [m].
         nut_factor: true one [-].
         seed: of the waviness.
@@ -63,7 +63,7 @@ class JointStiffness:
 
     Attributes:
         preload: of all bolts [N].
-        rough: roughness alone, under an even pressure on the whole face.
+        rough: roughness alone, under an even pressure on the whole surface.
         patch: roughness under the pressure of the bolts.
         bodies: the same with the compliance of the bodies.
         waves: the same with the waviness.
@@ -90,7 +90,7 @@ class JointStiffness:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoltedFaces:
-    """Two faces on bolts, ready to be loaded.
+    """Two surfaces on bolts, ready to be loaded.
 
     Attributes:
         design: sizes and materials.
@@ -124,7 +124,7 @@ class BoltedFaces:
         return JointStiffness(preload, rough, patch, bodies, waves, waves + bolts)
 
     def _moved(self, pressure: FloatArray) -> FloatArray:
-        """Return the displacement of the faces towards the bodies [m]."""
+        """Return the displacement of the surfaces towards the bodies [m]."""
         wide = np.fft.rfft2(pressure, s=(2 * GRID, 2 * GRID))
         return np.asarray(np.fft.irfft2(wide * self._green)[:GRID, :GRID])
 
@@ -147,7 +147,7 @@ class BoltedFaces:
         scale = 1.0 / (soft + self._green[0, 0].real / GRID)
 
         def act(p: FloatArray) -> FloatArray:
-            return self._moved(p) + soft * p
+            return np.asarray(self._moved(p) + soft * p)
 
         p = np.zeros_like(right)
         rest = right.copy()
@@ -164,13 +164,13 @@ class BoltedFaces:
             if size < 1e-14 * first:
                 break
             direction = z + size / before * direction
-        return p
+        return np.asarray(p)
 
     def _pressed(self, under: FloatArray, preload: float) -> FloatArray:
         """Return the stiffness per area where bolts press the waves together.
 
-        The bolts bend the bodies so that even faces would bear `under`; the waves move
-        the pressure from their valleys to their hills.
+        The bolts bend the bodies so that even surfaces would bear `under`; the waves
+        move the pressure from their valleys to their hills.
         """
         cell = (self.design.side / GRID) ** 2
         log_p = np.log(self.layer.pressure)
@@ -223,7 +223,8 @@ def _bolt_pressure(design: FaceDesign) -> FloatArray:
     """Return the share of the preload in each cell, (GRID, GRID).
 
     Each bolt presses two layers of equal thickness; between them its pressure is that
-    of the middle of one thick layer, without the pull further out that no joint bears.
+    of the middle of one thick layer, without the tension further out, which no joint
+    bears.
 
     Source:
         Sneddon 1946, Proc. Cambridge Phil. Soc. 42, 260 (symmetric load on a layer).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Roughness of two faces as a layer: gap over pressure by boundary elements.
+"""Roughness of two surfaces as a layer: gap over pressure by boundary elements.
 
 Nothing here is shared with the contact laws of the station: neither their spectra nor
 their solver.
@@ -18,11 +18,11 @@ _TOLERANCE = 1e-7
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoughLayer:
-    """Mean gap between rough faces over the pressure.
+    """Mean gap between rough surfaces over the pressure.
 
     Attributes:
         pressure: ascending [Pa], shape (n_points,).
-        gap: mean of both deformed faces [m], same shape.
+        gap: mean of both deformed surfaces [m], same shape.
     """
 
     pressure: FloatArray
@@ -47,7 +47,7 @@ class RoughLayer:
 def random_face(
     points: int, spacing: float, rms: float, longest: float, seed: int
 ) -> FloatArray:
-    """Return heights of a ground face, periodic [m], shape (points, points).
+    """Return heights of a ground surface, periodic [m], shape (points, points).
 
     Args:
         points: along one side.
@@ -75,7 +75,7 @@ def rough_layer(
     """Press rough heights flat at several pressures.
 
     Args:
-        heights: of both faces together, periodic [m], shape (n, n).
+        heights: of both surfaces together, periodic [m], shape (n, n).
         spacing: of the points [m].
         modulus: E* [Pa].
         pressure: ascending [Pa], shape (n_pressures,).
@@ -113,13 +113,13 @@ def _pressed(
         now = _with_mean(ahead - step * gap, mean)
         change = now - last
         if np.abs(change).max() < _TOLERANCE * mean:
-            return now
+            return np.asarray(now)
         # A step uphill ends the momentum (O'Donoghue and Candes 2015).
         if np.sum((ahead - now) * change) > 0:
             t = 1.0
         t, before = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * t * t)), t
         ahead, last = now + (before - 1.0) / t * change, now
-    return last
+    return np.asarray(last)
 
 
 def _with_mean(values: FloatArray, mean: float) -> FloatArray:
@@ -131,4 +131,4 @@ def _with_mean(values: FloatArray, mean: float) -> FloatArray:
             low = level
         else:
             high = level
-    return np.maximum(values - 0.5 * (low + high), 0.0)
+    return np.asarray(np.maximum(values - 0.5 * (low + high), 0.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hits on two blocks whose joint has the stiffness of its own bolted faces."""
+"""Hits on two blocks whose joint has the stiffness of its own bolted surfaces."""
 
 from dataclasses import dataclass, replace
 
@@ -34,10 +34,10 @@ _HITS = (
 """Struck body and level [N] at each torque; one condition is there twice."""
 FACE_POINTS = 256
 FACE_SPACING = 2e-6
-"""Of the maps of the roughness of one face [m]."""
+"""Of the maps of the roughness of one surface [m]."""
 _FACE_RMS = 0.6e-6
 _LONGEST = 80e-6
-"""Wavelength beyond which the roughness of a face is level [m]."""
+"""Wavelength beyond which the roughness of a surface is level [m]."""
 _COARSER = 2
 """Points of a map over those of the boundary elements, along a side."""
 _PRESSURES = (2e5, 8e8, 12)
@@ -61,16 +61,16 @@ _REFERENCE = 10.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointCampaign:
-    """Two blocks on a bolted joint: faces, hits and truth.
+    """Two blocks on a bolted joint: surfaces, hits and truth.
 
     Attributes:
-        faces: design of bodies, bolts and waviness.
-        heights: roughness of the lower and the upper face [m], (2, n, n).
+        surfaces: design of bodies, bolts and waviness.
+        heights: roughness of the lower and the upper surface [m], (2, n, n).
         stiffness: of the joint at each torque, cause by cause, without scatter.
         campaign: the hits.
     """
 
-    faces: FaceDesign
+    surfaces: FaceDesign
     heights: FloatArray
     stiffness: tuple[JointStiffness, ...]
     campaign: SimulatedCampaign
@@ -83,10 +83,10 @@ class JointCampaign:
 def joint_campaign(
     seed: int, *, effects: tuple[HiddenEffect, ...] = ()
 ) -> JointCampaign:
-    """Simulate faces, joint and hits at six torques.
+    """Simulate surfaces, joint and hits at six torques.
 
     Args:
-        seed: of faces, bodies and hits.
+        seed: of surfaces, bodies and hits.
         effects: hidden in the structure.
     """
     rng = np.random.default_rng([seed, 43])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two blocks on a bolted joint whose stiffness is that of its own faces."""
+"""Two blocks on a bolted joint whose stiffness is that of its own surfaces."""
 
 from dataclasses import dataclass
 from urllib.parse import urlencode
@@ -21,10 +21,10 @@ from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltedBlocks:
-    """Hits at six torques on a joint of ground, wavy faces.
+    """Hits at six torques on a joint of ground, wavy surfaces.
 
     Attributes:
-        seed: of faces, bodies and hits.
+        seed: of surfaces, bodies and hits.
         hide: names of effects hidden in the structure, joined by commas.
         size: of each of them, as a share of its largest physical size [-].
     """
@@ -58,7 +58,7 @@ class BoltedBlocks:
         return tuple(word.strip() for word in self.hide.split(",") if word.strip())
 
     def simulate(self) -> JointCampaign:
-        """Simulate faces, joint and hits."""
+        """Simulate surfaces, joint and hits."""
         plain = joint_campaign(self.seed)
         if not self._hidden:
             return plain

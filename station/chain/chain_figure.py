@@ -12,6 +12,7 @@ from jointbench.station.chain.examine_chain import ExaminedChain
 from jointbench.station.report.gap_bars import AFTER, BEFORE, LEGEND, MEASURED
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import PALETTE, Trace, line, markers
+from jointbench.station.screen.value_text import engineering
 
 HEIGHT = 620
 _TITLE_WIDTH = 84
@@ -23,7 +24,7 @@ _HEADINGS = {
     ChainLink.CONTACT: ("2 contact law: stiffness of the joint", 0.56, 0.93),
     ChainLink.STRUCTURE: ("3 structure: FRF", 0.0, 0.36),
 }
-_MARK = "  ◄ the disagreement enters here"
+_MARK = "  ◄ enters here"
 
 
 def chain_figure(done: ExaminedChain) -> Figure:
@@ -151,7 +152,7 @@ def _response(done: ExaminedChain) -> tuple[list[Trace], dict[str, object]]:
             line(1e3 * r.time[shown], record[shown], "", color=color, width=width,
                  dash=dash, axes=("x4", "y4"), legend=False)
         )  # fmt: skip
-    where = f"{r.channel}, hits on {r.body}, {r.preload:.3g} N"
+    where = f"{r.channel}, hits on {r.body}, {engineering(r.preload, 'N')}"
     return traces, {
         "xaxis3": axis(f"frequency [Hz]; {where}", domain=_LEFT, anchor="y3"),
         "yaxis3": axis("|FRF| [m/(N s²)]", log=True, domain=_BOTTOM, anchor="x3"),

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The report of a chain as one HTML page."""
+"""The report of a chain as one HTML file."""
 
 from jointbench.acquisition.records.session import software_version
 from jointbench.station.chain.chain_figure import HEIGHT, chain_figure
-from jointbench.station.chain.chain_words import (
+from jointbench.station.chain.chain_tables import (
     cause_rows,
-    chain_headline,
     factor_title,
     hypothesis_rows,
     mode_rows,
     product_words,
     stiffness_rows,
 )
+from jointbench.station.chain.chain_words import chain_headline
 from jointbench.station.chain.examine_chain import ExaminedChain
 from jointbench.station.gap.contact_section import contact_sections
 from jointbench.station.screen.page_parts import (
@@ -60,7 +60,9 @@ def chain_sections(done: ExaminedChain) -> tuple[Section, ...]:
     )
     return (
         Section(
-            "chain", "The chain", (Plot("chain", _CAPTION, chain_figure(done), HEIGHT),)
+            "chain",
+            "The chain",
+            (Plot("chain_figure", _CAPTION, chain_figure(done), HEIGHT),),
         ),
         Section("links", "Where the disagreement enters", (Text(found.reason), tests)),
         Section("causes", "Causes at the joint", _causes(done)),

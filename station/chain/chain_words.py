@@ -2,11 +2,17 @@
 """What ``jointbench gap --surface`` shows on a terminal, and its JSON."""
 
 import textwrap
-from collections.abc import Mapping
-from typing import Any
 
-from jointbench.analysis.gap.chain.chain_records import ChainLink, LinkTest
-from jointbench.analysis.gap.model.diagnosis_record import Finding, diagnosis_json
+from jointbench.analysis.gap.chain.chain_records import ChainLink
+from jointbench.analysis.gap.model.diagnosis_record import Finding
+from jointbench.station.chain.chain_tables import (
+    cause_rows,
+    factor_title,
+    hypothesis_rows,
+    mode_rows,
+    product_words,
+    stiffness_rows,
+)
 from jointbench.station.chain.examine_chain import ExaminedChain
 from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.value_text import engineering
@@ -40,8 +46,11 @@ def cause_words(done: ExaminedChain) -> str:
     several = done.found.several
     if done.found.links == (ChainLink.CONTACT,) and several is not None:
         own = " with ".join(_plain(cause.name) for cause in several.causes)
-        others = [" with ".join(map(_plain, one)) for one in several.rivals]
-        return own + (f" (or {'; '.join(others)})" if others else "")
+        count = len(several.rivals)
+        if not count:
+            return own
+        others = "another set that fits" if count == 1 else f"{count} sets that fit"
+        return f"{own}, or {others} equally well"
     names = [name.partition("@") for name in done.found.names]
     return ", ".join(
         f"{name.replace('_', ' ')} ({site.partition(':')[2] or site})"
@@ -112,148 +121,3 @@ def show_chain(done: ExaminedChain, json_target: str | None) -> None:
             subsequent_indent="      ",
         ):
             screen.print(line, markup=False)
-
-
-def hypothesis_rows(done: ExaminedChain) -> list[tuple[str, ...]]:
-    """Return one row for each place of a free discrepancy."""
-    return [
-        (one.words, *map(_test, one.tests), "yes" if one.restored else "no")
-        for one in done.found.location.hypotheses
-    ]
-
-
-def _test(test: LinkTest) -> str:
-    if not test.dof:
-        return "not tested"
-    return f"{test.cost / test.dof:.3g}" + ("" if test.passed else " !")
-
-
-def factor_title(done: ExaminedChain) -> str:
-    """Return the title of the table of causes."""
-    several = done.found.several
-    at = (
-        ""
-        if several is None
-        else engineering(float(done.stiffness.preload[several.reference]), "N")
-    )
-    return f"Causes at the joint, at {at}"
-
-
-def cause_rows(done: ExaminedChain) -> list[tuple[str, ...]]:
-    """Return name, factor and interval of each cause at the joint."""
-    several = done.found.several
-    if several is None or ChainLink.CONTACT not in done.found.links:
-        return []
-    return [
-        (
-            one.name.replace("_", " "),
-            f"{one.factor:.3g}",
-            f"{one.low:.3g} to {one.high:.3g}",
-        )
-        for one in several.causes
-    ]
-
-
-def product_words(done: ExaminedChain) -> str:
-    """Return product of the factors beside the ratio between joint and law."""
-    several = done.found.several
-    if several is None:
-        return ""
-    return (
-        f"product {several.product:.3g}; measured over law {several.measured:.3g}; "
-        f"not named {several.measured / several.product:.2f}"
-    )
-
-
-def stiffness_rows(done: ExaminedChain) -> list[tuple[str, ...]]:
-    """Return one row for each state."""
-    s = done.stiffness
-    rows = []
-    for k in range(len(s.preload)):
-        off = abs(float(s.measured[k] / s.after[k]) - 1.0)
-        inside = off <= 1.96 * float(s.after_sd[k])
-        rows.append(
-            (
-                engineering(float(s.preload[k]), "N"),
-                f"{s.before[k]:.3g}",
-                f"{s.after[k]:.4g} ± {100 * s.after_sd[k]:.2g} %",
-                f"{s.measured[k]:.4g}",
-                "yes" if inside else "no",
-            )
-        )
-    return rows
-
-
-def mode_rows(done: ExaminedChain) -> list[tuple[str, ...]]:
-    """Return one row for each state."""
-    return [
-        (
-            engineering(one.preload, "N"),
-            *(
-                ", ".join(f"{f:.1f}" for f in values)
-                for values in (one.before, one.after, one.measured)
-            ),
-        )
-        for one in done.modes
-    ]
-
-
-def chain_json(done: ExaminedChain) -> Mapping[str, Any]:
-    """Return the verdict and all numbers as plain data."""
-    found, s = done.found, done.stiffness
-    several = found.several
-    return {
-        "verdict": found.finding.value,
-        "links": [link.value for link in found.links],
-        "places": [[x.value for x in one.links] for one in found.location.places],
-        "effects": list(found.names),
-        "reason": found.reason,
-        "experiment": found.experiment,
-        "hypotheses": [
-            {
-                "links": [link.value for link in one.links],
-                "restored": one.restored,
-                "score": one.score,
-                "tests": {
-                    link.value: {
-                        "chi2": test.cost,
-                        "dof": test.dof,
-                        "passed": test.passed,
-                        "reason": test.reason,
-                    }
-                    for link, test in zip(ChainLink, one.tests, strict=True)
-                },
-            }
-            for one in found.location.hypotheses
-        ],
-        "causes": None
-        if several is None
-        else {
-            "factors": [
-                {"name": c.name, "factor": c.factor, "interval_95": [c.low, c.high]}
-                for c in several.causes
-            ],
-            "product": several.product,
-            "measured_over_law": several.measured,
-            "rivals": [list(one) for one in several.rivals],
-            "preload": float(s.preload[several.reference]),
-        },
-        "stiffness": {
-            "preload": s.preload.tolist(),
-            "measured": s.measured.tolist(),
-            "law": s.before.tolist(),
-            "predicted": s.after.tolist(),
-            "predicted_log_sd": s.after_sd.tolist(),
-        },
-        "modes": [
-            {
-                "preload": one.preload,
-                "measured_hz": one.measured.tolist(),
-                "law_hz": one.before.tolist(),
-                "predicted_hz": one.after.tolist(),
-            }
-            for one in done.modes
-        ],
-        "joint": diagnosis_json(found.contact.found),
-        "remarks": list(done.remarks),
-    }

@@ -61,8 +61,7 @@ def bolted_joint(model: BenchModel, path: Path) -> BoltedLinkTable:
     """
     if model.bolted_joint is None:
         raise UsageError(
-            f"'{path}' does not say which link is the joint of these surfaces; "
-            f"{_WAY_OUT}"
+            f"'{path}' names no link as the joint of these surfaces; {_WAY_OUT}"
         )
     return model.bolted_joint
 

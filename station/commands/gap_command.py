@@ -10,7 +10,6 @@ from jointbench.analysis.gap.catalogue.installed_effects import (
 )
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
 from jointbench.analysis.gap.response.threads import side_by_side
-from jointbench.station.chain.run_chain import run_chain
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.gap.curve_section import curve_section
 from jointbench.station.gap.gap_inputs import Examined, examine
@@ -36,7 +35,6 @@ def run_gap(
     without: str | None,
     effects: Sequence[Path | str] = (),
     curves: bool = False,
-    surfaces: Sequence[Path] = (),
     report: Path | None,
     json_target: str | None,
 ) -> Diagnosis:
@@ -51,7 +49,6 @@ def run_gap(
         effects: further ones: files of the user's own effects, run as Python, and
             names of laws of real joints.
         curves: whether modes over amplitude are compared with the explanations.
-        surfaces: contact surfaces of the joint, for a diagnosis of the whole chain.
         report: HTML report to write, or None.
         json_target: where the JSON goes.
     """
@@ -59,16 +56,10 @@ def run_gap(
     sources = [str(one) for one in given]
     files = [Path(name) for name in sources if not is_url(name)]
     owned = [one for one in effects if isinstance(one, Path)]
-    check_outputs(
-        [*files, *owned, *surfaces, *([model] if model else [])], [report, json_target]
-    )
+    check_outputs([*files, *owned, *([model] if model else [])], [report, json_target])
     wanted = gap_request(
         model=model, preload=preload, without=without, effects=effects, curves=curves
     )
-    if surfaces:
-        return run_chain(
-            files, list(surfaces), wanted, report=report, json_target=json_target
-        )
     packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
     with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:

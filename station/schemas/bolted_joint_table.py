@@ -22,7 +22,7 @@ from jointbench.station.schemas.positive_quantities import Pressure
 class BoltedLinkTable(BoltedJointTable, BodiesTable):
     """One link of a model as a bolted joint between measured surfaces.
 
-    The direction says which stiffness of the contact the link is.
+    The direction is that of the contact stiffness that the link stands for.
     """
 
     link: str

@@ -82,22 +82,22 @@ hardness = "1.5 GPa"
 """
 
 
-def blocks_text(design: CampaignDesign, faces: FaceDesign) -> str:
+def blocks_text(design: CampaignDesign, surfaces: FaceDesign) -> str:
     """Write what an operator would know of two bolted blocks.
 
     Args:
         design: of the hits; its true values stay out.
-        faces: sizes; waviness and true nut factor stay out.
+        surfaces: sizes; waviness and true nut factor stay out.
 
     Returns:
         TOML with a table [bolted_joint].
     """
     mm = 1e3
     return model_text(design) + BLOCKS.format(
-        diameter=mm * faces.bolt_diameter,
-        area=1e4 * faces.side**2,
-        head=mm * faces.head_diameter,
-        clamped=2 * mm * faces.thickness,
-        place=mm * faces.bolt_place,
-        rocking=mm * faces.side / 12**0.5,
+        diameter=mm * surfaces.bolt_diameter,
+        area=1e4 * surfaces.side**2,
+        head=mm * surfaces.head_diameter,
+        clamped=2 * mm * surfaces.thickness,
+        place=mm * surfaces.bolt_place,
+        rocking=mm * surfaces.side / 12**0.5,
     )

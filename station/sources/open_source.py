@@ -165,7 +165,7 @@ def blocks_sequence(name: str, made: "JointCampaign") -> RunSequence:
     runs = tuple(
         ChassisRun(run, samples=run.samples.shape[1]) for run in campaign_runs(campaign)
     )
-    text = blocks_text(campaign.design, made.faces)
+    text = blocks_text(campaign.design, made.surfaces)
     return RunSequence(name, True, runs, text, truth)
 
 

@@ -9,7 +9,7 @@ _SWEPT = "not measured"
 
 
 @dataclass(frozen=True, slots=True)
-class ChainSettings:
+class ChainBenchSettings:
     """Numbers of the algorithms; unit, purpose and basis are with each field."""
 
     mode_discrepancy: float = decision(
@@ -68,4 +68,4 @@ class ChainSettings:
     )
 
 
-CHAIN = ChainSettings()
+CHAIN = ChainBenchSettings()

@@ -46,7 +46,7 @@ _PRELOAD_FAMILY = "preload"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StateFit:
+class FittedState:
     """The hits of one state with the fits of the structure.
 
     Attributes:
@@ -79,7 +79,7 @@ class LumpedStructure:
     """
 
     reading: StructureReading
-    states: tuple[StateFit, ...]
+    states: tuple[FittedState, ...]
     link: int
     diagnosis: Diagnosis | None
 
@@ -140,7 +140,7 @@ def read_lumped(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Tested:
+class _StructureTest:
     """Outcome of the test of the structure at one state."""
 
     bench: LumpedBench
@@ -149,7 +149,9 @@ class _Tested:
     after: LinkTest
 
 
-def _test(bench: LumpedBench, progress: Progress) -> tuple[Diagnosis | None, _Tested]:
+def _test(
+    bench: LumpedBench, progress: Progress
+) -> tuple[Diagnosis | None, _StructureTest]:
     """Search for an effect of the structure; no diagnosis where none is missing."""
     outcome = investigate(bench, progress)
     final = outcome.bench
@@ -166,7 +168,7 @@ def _test(bench: LumpedBench, progress: Progress) -> tuple[Diagnosis | None, _Te
     after = LinkTest(
         outcome.best.cost, dof, outcome.acceptance.passed, "with the effects", charge
     )
-    tested = _Tested(final, outcome.best, test, after)
+    tested = _StructureTest(final, outcome.best, test, after)
     if test.passed:
         return None, tested
     limits = campaign_limits(final.campaign, final.policy)
@@ -178,7 +180,7 @@ def _fitted(
     link: int,
     without: frozenset[str],
     entries: tuple[LumpedEffect, ...],
-) -> StateFit:
+) -> FittedState:
     """Fit the base to the hits of one state, from a stiffness that was scanned for."""
     if len(campaign.hit) < CHAIN.least_hits:
         raise BadData(
@@ -194,7 +196,7 @@ def _fitted(
     settled, fit = fit_base(bench)
     if not isinstance(settled, LumpedBench):
         raise TypeError("a fit must return a bench of the type it was given")
-    return StateFit(settled, fit)
+    return FittedState(settled, fit)
 
 
 def _freed(campaign: Campaign, link: int, factor: float) -> Campaign:
@@ -229,7 +231,9 @@ def _scanned(
     return tried[int(np.argmin(costs))]
 
 
-def _with_effects(state: StateFit, bench: LumpedBench, fit: Fit, link: int) -> StateFit:
+def _with_effects(
+    state: FittedState, bench: LumpedBench, fit: Fit, link: int
+) -> FittedState:
     """Fit a state with the effects found at another one."""
     own, base = state.bench, fit.base.copy()
     # Nominal values of the joint differ from state to state.
@@ -264,7 +268,7 @@ def _coordinates(
     )
 
 
-def _joint(states: Sequence[StateFit], link: int, test: LinkTest) -> JointReading:
+def _joint(states: Sequence[FittedState], link: int, test: LinkTest) -> JointReading:
     """Return ln k of the joint in each state, with its variance."""
     values, variances = [], []
     for state in states:

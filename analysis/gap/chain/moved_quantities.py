@@ -12,7 +12,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.gap.chain.chain_diagnosis import ChainDiagnosis
-from jointbench.analysis.gap.chain.lumped_structure import LumpedStructure, StateFit
+from jointbench.analysis.gap.chain.lumped_structure import FittedState, LumpedStructure
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 from jointbench.analysis.lumped.lumped_modes import solve_modes
@@ -153,7 +153,7 @@ def moved_modes(
     return tuple(found)
 
 
-def _model(state: StateFit, base: FloatArray) -> LumpedModel:
+def _model(state: FittedState, base: FloatArray) -> LumpedModel:
     """Return the lumped model with fitted values."""
     model = state.bench.campaign.model
     n, m = len(model.bodies), len(model.links)
@@ -206,13 +206,15 @@ def moved_response(
     records = [campaign.response[own, row], *predicted]
     force = campaign.force[own]
     loudest = int(np.argmax(np.abs(force).max(axis=1)))
-    frequency, frfs = _frfs(force, records, campaign.sample_rate)
+    frequency, (seen, law, named) = _frfs(force, records, campaign.sample_rate)
     return MovedResponse(
         float(stiffness.preload[state]),
         body,
         campaign.model.channels[row].name,
         frequency,
-        *frfs,
+        seen,
+        law,
+        named,
         np.arange(force.shape[1]) / campaign.sample_rate,
         np.stack([r[loudest] for r in records]),
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.chain.chain_settings import CHAIN
 from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
@@ -220,7 +220,7 @@ def _draws(fit: Fit) -> FloatArray:
 
 
 def _factors(
-    bench: ContactBench, fit: Fit, x: FloatArray, order: FloatArray, state: int
+    bench: ContactBench, fit: Fit, x: FloatArray, order: IntArray, state: int
 ) -> list[float]:
     """Return the factor of each effect on the stiffness of a state, in order."""
     base = x[: fit.n_base]
