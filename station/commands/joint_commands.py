@@ -107,6 +107,7 @@ def gap_command(
     Examples:
         jointbench gap session.h5 --model bench.toml --report gap.html
         jointbench gap hits.h5 --model sheet.json
+        jointbench gap surface.csv --report surface.html
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
     from jointbench.station.commands.gap_command import run_gap
