@@ -113,10 +113,12 @@ class PartialExplanation:
     def explained(self) -> float:
         """Share of what a law could explain that this one does [-].
 
-        What repeats of a condition show as scatter, no law explains.
+        What repeats of a condition show as scatter, no law explains. The larger of two
+        values counts: without that scatter, over the conditions with repeats, and with
+        it, over all conditions.
         """
         left = self.left_of_explainable
-        return self.share if left is None else 1.0 - left
+        return self.share if left is None else max(self.share, 1.0 - left)
 
 
 def partial_json(found: PartialExplanation) -> dict[str, Any]:

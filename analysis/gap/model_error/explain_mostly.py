@@ -105,8 +105,8 @@ def _shape_doubt(found: PartialExplanation, policy: Policy) -> str:
 
     A law that leaves little is near enough, whatever shape that has.
     """
-    beside, left = found.beside, 1.0 - found.explained
-    if beside is None or left <= policy.mostly_left:
+    beside, left = found.beside, found.left_of_explainable
+    if beside is None or (left is not None and left <= policy.mostly_left):
         return ""
     if beside.share <= policy.mostly_beside:
         return ""
