@@ -138,6 +138,8 @@ def _link_inertia(state: ElementState, v: FloatArray) -> ComplexArray:
 
 CLOCK_DRIFT = _late("delay that grows within the record")
 """What a clock of the responses that drifts against that of the force does."""
+LIKE_A_CLOCK = frozenset({"delay", "sensor_lowpass"})
+"""Effects that such a clock imitates if all channels have them."""
 SPRINGS: tuple[LumpedEffect, ...] = (
     _spring("square of the motion", 2, lambda r: r**2),
     _spring("cube of the motion", 3, lambda r: r**3),

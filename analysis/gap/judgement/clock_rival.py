@@ -8,7 +8,7 @@ catalogue has no such effect: a delay is named only if it explains the records b
 """
 
 from jointbench.analysis.gap.catalogue.catalogue import ALL_CHANNELS
-from jointbench.analysis.gap.catalogue.probes import CLOCK_DRIFT
+from jointbench.analysis.gap.catalogue.probes import CLOCK_DRIFT, LIKE_A_CLOCK
 from jointbench.analysis.gap.model.effect import Candidate, Site
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -16,7 +16,6 @@ from jointbench.analysis.gap.search.candidate_starts import started
 from jointbench.analysis.gap.search.screening import screen
 
 _EVERY = Site("channel", ALL_CHANNELS)
-_IMITATED = frozenset({"delay", "sensor_lowpass"})
 
 
 def clock_rival(bench: Bench, fit: Fit, base: Fit) -> str:
@@ -29,7 +28,7 @@ def clock_rival(bench: Bench, fit: Fit, base: Fit) -> str:
     """
     probe = Candidate(CLOCK_DRIFT.effect, _EVERY)
     alone = len(fit.candidates) == 1 and fit.candidates[0].site == _EVERY
-    if not alone or fit.candidates[0].effect.name not in _IMITATED:
+    if not alone or fit.candidates[0].effect.name not in LIKE_A_CLOCK:
         return ""
     if probe not in bench.probes:
         return ""
