@@ -65,11 +65,14 @@ def _kinds(unit: str) -> list[str]:
     return [kind for kind in _KINDS if unit and is_unit(unit, kind)]
 
 
-def hit_columns_stated(table: Table) -> tuple[Column, ...] | None:
+def hit_columns_stated(
+    table: Table, *, timed: bool = True
+) -> tuple[Column, ...] | None:
     """Return the columns of a table of hits, from its header.
 
     Args:
         table: as read.
+        timed: whether a column of times is needed.
 
     Returns:
         One time and at least one quantity, each column's unit a unit of one of them;
@@ -84,7 +87,7 @@ def hit_columns_stated(table: Table) -> tuple[Column, ...] | None:
         columns.append(Column(kinds[0], unit, "" if kinds == ["time"] else name))
     roles = [column.role for column in columns]
     labels = [column.label for column in columns if column.role != "time"]
-    if roles.count("time") != 1 or not labels:
+    if (roles.count("time") != 1 and (timed or "time" in roles)) or not labels:
         return None
     if len(set(labels)) != len(labels) or "" in labels:
         columns = [Column(column.role, column.unit) for column in columns]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.formats.heights.height_facts import cautions
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Channel, Recording
 from jointbench.acquisition.records.session import JointSetup, Session, new_session
 from jointbench.acquisition.records.surfaces import Surface
@@ -23,10 +24,8 @@ def run_import(
     files: Sequence[Path],
     out: Path,
     *,
-    columns: str | None,
-    point: str,
+    options: SampleOptions,
     preload: str | None = None,
-    full_scale: float | None = None,
     overwrite: bool,
     json_target: str | None,
 ) -> Session:
@@ -35,11 +34,8 @@ def run_import(
     Args:
         files: hits and surfaces.
         out: session file.
-        columns: roles and units of the columns of plain tables.
-        point: hit point.
+        options: what the user says about the files.
         preload: on the joint during the recording, with unit.
-        full_scale: value of the largest number of a WAV file, in the unit of
-            `columns`.
         overwrite: replace an existing session.
         json_target: where the JSON goes.
 
@@ -60,9 +56,7 @@ def run_import(
     surfaces: list[Surface] = []
     for path in files:
         with working(f"reading {path.name}"):
-            records = read_foreign(
-                path, columns=columns, point=point, full_scale=full_scale
-            )
+            records = read_foreign(path, options)
         for record in records:
             if isinstance(record, Recording):
                 name = _free(record.name, [r.name for r in recordings])

@@ -24,6 +24,7 @@ from jointbench.station.commands.shared_options.input_options import (
     HitFiles,
     Point,
     Preload,
+    Rate,
     SurfaceFiles,
 )
 from jointbench.station.commands.shared_options.joint_options import Model
@@ -59,6 +60,7 @@ def import_command(
     out: SessionOut,
     columns: Columns = None,
     point: Point = "1",
+    rate: Rate = None,
     preload: Preload = None,
     full_scale: FullScale = None,
     force: Force = False,
@@ -75,15 +77,15 @@ def import_command(
         jointbench import trace.txt --out session.h5 --columns 'x:um,z:um'
         --preload '4 kN'
     """
+    from jointbench.acquisition.formats.samples.sample_format import SampleOptions
     from jointbench.station.commands.import_command import run_import
+    from jointbench.station.files.input_files import parse_rate
 
     run_import(
         files,
         out,
-        columns=columns,
-        point=point,
+        options=SampleOptions(columns, point, full_scale, parse_rate(rate)),
         preload=preload,
-        full_scale=full_scale,
         overwrite=force,
         json_target=json,
     )
@@ -93,6 +95,7 @@ def modal_command(
     files: HitFiles,
     columns: Columns = None,
     point: Point = "1",
+    rate: Rate = None,
     band: Band = None,
     order: Order = None,
     estimator: EstimatorName = "H1",
@@ -118,6 +121,8 @@ def modal_command(
         jointbench modal frf.txt --columns 'frequency:Hz,real:m/N,imaginary:m/N'
         jointbench modal spindle.h5 --output-only --band 30:500 --keep-sines
     """
+    from jointbench.station.files.input_files import parse_rate
+
     if output_only:
         from jointbench.station.commands.output_only_command import run_output_only
         from jointbench.station.pipeline.modal_options import parse_band
@@ -125,6 +130,7 @@ def modal_command(
         run_output_only(
             files,
             columns=columns,
+            rate=parse_rate(rate),
             band=parse_band(band),
             order=order,
             keep_sines=keep_sines,
@@ -139,6 +145,7 @@ def modal_command(
             "leave it out"
         )
     from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+    from jointbench.acquisition.formats.samples.sample_format import SampleOptions
     from jointbench.station.commands.modal_command import run_frfs, run_modal
     from jointbench.station.pipeline.modal_options import modal_settings
 
@@ -149,8 +156,7 @@ def modal_command(
     run_modal(
         files,
         settings,
-        columns=columns,
-        point=point,
+        samples=SampleOptions(columns, point, rate=parse_rate(rate)),
         out=out,
         universal=uff,
         json_target=json,

@@ -10,12 +10,14 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.station.files.input_files import (
     is_session_name,
+    parse_rate,
     read_foreign,
     refuse_twice,
 )
@@ -140,7 +142,11 @@ _UNITS = {
 
 
 def open_measurement(
-    files: Files, *, columns: str | None = None, point: str = "1"
+    files: Files,
+    *,
+    columns: str | None = None,
+    point: str = "1",
+    rate: str | float | None = None,
 ) -> Measurement:
     """Open sessions, files of hits, or surfaces.
 
@@ -149,6 +155,8 @@ def open_measurement(
         columns: what the columns of plain tables hold, with units, for example
             ``"time:s,force:N,acceleration:m/s^2"`` or ``"x:um,z:um"``.
         point: where the hammer struck, for files that do not say.
+        rate: sample rate of files without times: [Hz], or a text such as
+            ``"25.6 kHz"``.
 
     Returns:
         Recordings and surfaces of all files.
@@ -159,6 +167,7 @@ def open_measurement(
     """
     paths = paths_of(files)
     refuse_twice(paths)
+    options = SampleOptions(columns, point, rate=parse_rate(rate))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
     sessions: list[Session] = []
@@ -168,7 +177,7 @@ def open_measurement(
             recordings += sessions[-1].recordings
             surfaces += sessions[-1].surfaces
             continue
-        for one in read_foreign(path, columns=columns, point=point):
+        for one in read_foreign(path, options):
             if isinstance(one, Recording):
                 recordings.append(one)
             else:

@@ -56,6 +56,13 @@ Preload = Annotated[
 Sessions = Annotated[
     list[Path] | None, typer.Argument(metavar="SESSION", help="Session files (.h5).")
 ]
+Rate = Annotated[
+    str | None,
+    typer.Option(
+        metavar="QUANTITY",
+        help="Sample rate of files without times, for example '25.6 kHz'.",
+    ),
+]
 FullScale = Annotated[
     float | None,
     typer.Option(
