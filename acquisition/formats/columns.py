@@ -30,8 +30,6 @@ from jointbench.acquisition.records.recordings import Quantity
 
 SKIP = "skip"
 HITS_EXAMPLE = "time:s,force:N,acceleration:m/s^2"
-RATE_EXAMPLE = "--columns 'force:N,acceleration:m/s^2' --rate '10 kHz'"
-QUANTITY_NAMES = tuple(quantity.value for quantity in Quantity)
 SURFACE_EXAMPLES = ("x:um,z:um", "x:mm,y:mm,z:um")
 _KINDS = {"time": "time", "x": "length", "y": "length", "z": "length"} | {
     quantity.value: quantity.value for quantity in Quantity
@@ -106,15 +104,6 @@ def parse_columns(spec: str) -> tuple[Column, ...]:
     return columns
 
 
-def roles_named(columns: str | None) -> frozenset[str]:
-    """Return the roles that follow --columns; nothing is checked."""
-    return frozenset(
-        re.split(r"[.@:]", item.strip(), maxsplit=1)[0]
-        for item in (columns or "").split(",")
-        if item.strip()
-    )
-
-
 def only_roles(columns: Sequence[Column], allowed: Sequence[str], what: str) -> None:
     """Raise `UsageError` if a column has a role that `what` does not support."""
     for column in columns:
@@ -138,7 +127,7 @@ def _parse_item(item: str) -> Column:
             f"{item.rstrip(':')}:{example_unit(_KINDS[role])}"
         )
     unit = match["unit"].strip()
-    reversed_ = unit.startswith("-") and role in QUANTITY_NAMES
+    reversed_ = unit.startswith("-") and role in tuple(Quantity)
     unit = unit[1:].strip() if reversed_ else unit
     return Column(
         role=role,

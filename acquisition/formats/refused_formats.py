@@ -12,9 +12,9 @@ _PICKLE = re.compile(rb"\x80[\x02-\x05](?:\x95|[\]\}cq(]|.q)", re.DOTALL)
 _PICKLES = (".pkl", ".pickle", ".p", ".dill", ".joblib")
 _EXPORT = "export it as a universal file (data set 58), as MAT, or as a table of text"
 _WAYS = {
-    ".xlsx": "is a workbook of Excel; save the sheet as .csv",
-    ".xls": "is a workbook of Excel; save the sheet as .csv",
-    ".ods": "is a spreadsheet; save the sheet as .csv",
+    ".xlsx": "is a workbook of Excel; save the table as .csv",
+    ".xls": "is a workbook of Excel; save the table as .csv",
+    ".ods": "is a spreadsheet; save the table as .csv",
     ".parquet": "is a Parquet table; save it as .csv or .npz",
     ".feather": "is a Feather table; save it as .csv or .npz",
     ".dxd": f"is a recording of Dewesoft; {_EXPORT}",

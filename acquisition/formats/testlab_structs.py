@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Structs of MAT files as Simcenter Testlab exports them, and plain variables.
+"""Structs of MAT files as Simcenter Testlab exports them.
 
 A struct of Testlab has ``x_values`` (start, increment, number, label of the unit),
 ``y_values`` (values, quantity with the label of its unit) and ``function_record``
@@ -15,24 +15,9 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import named
-from jointbench.acquisition.formats.mat5_structs import read_mat5
-from jointbench.acquisition.formats.mat73_structs import read_mat73
-from jointbench.acquisition.formats.tables import read_head
 
-_HDF5 = (b"\x89HDF", b"MATLAB 7.3")
 _DEEPEST = 4
 Struct = Mapping[str, Any]
-
-
-def read_mat(path: Path) -> dict[str, Any]:
-    """Return the variables of a MAT file of any version from 5 on.
-
-    Raises:
-        FormatError: it is damaged.
-        HostileFile: it asks for more than a measurement would.
-    """
-    head = read_head(path, 16)
-    return read_mat73(path) if head.startswith(_HDF5) else read_mat5(path)
 
 
 def testlab_structs(
@@ -50,21 +35,6 @@ def testlab_structs(
                 yield own, one
             elif depth < _DEEPEST:
                 yield from testlab_structs(one, f"{own}.", depth + 1)
-
-
-def plain_arrays(
-    content: Struct, prefix: str = "", depth: int = 0
-) -> dict[str, NDArray[Any]]:
-    """Return all arrays of a file by name, those in structs as ``"struct.field"``."""
-    found: dict[str, NDArray[Any]] = {}
-    for name, value in content.items():
-        for number, one in enumerate(value if isinstance(value, list) else [value], 1):
-            own = f"{prefix}{name}" + (f"({number})" if isinstance(value, list) else "")
-            if isinstance(one, np.ndarray):
-                found[own] = one
-            elif isinstance(one, Mapping) and depth < _DEEPEST:
-                found |= plain_arrays(one, f"{own}.", depth + 1)
-    return found
 
 
 def struct_values(struct: Struct) -> NDArray[Any]:

@@ -8,10 +8,12 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.file_access.text_files import file_digest
-from jointbench.acquisition.formats.columns import (
+from jointbench.acquisition.formats.column_roles import (
     QUANTITY_NAMES,
-    SURFACE_EXAMPLES,
     roles_named,
+)
+from jointbench.acquisition.formats.columns import (
+    SURFACE_EXAMPLES,
 )
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.formats.samples.hit_tables import read_recording

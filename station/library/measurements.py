@@ -225,6 +225,21 @@ def paths_of(files: Files) -> tuple[Path, ...]:
     return tuple(Path(one) for one in given)
 
 
+def one_path(name: str | Path, what: str) -> Path:
+    """Return the name of one file or folder as a path.
+
+    Args:
+        name: as given.
+        what: what the file is, for the message: ``"a model"``.
+
+    Raises:
+        UsageError: it is no file name.
+    """
+    if not isinstance(name, str | Path) or not str(name):
+        raise UsageError(f"{name!r} is no file name; give the path of {what}")
+    return Path(name)
+
+
 def _counted(found: Measurement) -> str:
     return f"{len(found.recordings)} recordings, {len(found.surfaces)} surfaces"
 

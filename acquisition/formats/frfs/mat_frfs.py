@@ -34,10 +34,12 @@ from jointbench.acquisition.formats.frfs.frf_columns import (
 )
 from jointbench.acquisition.formats.frfs.frf_format import FrfFormat, FrfOptions
 from jointbench.acquisition.formats.frfs.nodal_arrays import nodal_arrays, nodal_frfs
+from jointbench.acquisition.formats.mat_contents import (
+    read_mat,
+)
 from jointbench.acquisition.formats.tables import read_head
 from jointbench.acquisition.formats.testlab_structs import (
     Struct,
-    read_mat,
     struct_axis,
     struct_labels,
     struct_unit,

@@ -18,7 +18,10 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, FormatError, UnitError
 from jointbench.acquisition.basics.units import is_unit, to_si
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.acquisition.formats.columns import QUANTITY_NAMES, roles_named
+from jointbench.acquisition.formats.column_roles import (
+    QUANTITY_NAMES,
+    roles_named,
+)
 from jointbench.acquisition.formats.frfs.checked_frf import (
     RawFrf,
     checked_frf,
@@ -32,7 +35,7 @@ from jointbench.acquisition.formats.frfs.frf_columns import (
     stated_unit,
 )
 from jointbench.acquisition.formats.frfs.frf_format import FrfFormat, FrfOptions
-from jointbench.acquisition.formats.labelled_arrays import (
+from jointbench.acquisition.formats.netcdf_arrays import (
     NETCDF_SUFFIXES,
     LabelledArray,
     complex_pairs,

@@ -8,7 +8,10 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, UnitError
 from jointbench.acquisition.file_access.text_files import file_size
-from jointbench.acquisition.formats.columns import QUANTITY_NAMES, roles_named
+from jointbench.acquisition.formats.column_roles import (
+    QUANTITY_NAMES,
+    roles_named,
+)
 from jointbench.acquisition.formats.frfs.frf_arrays import (
     frfs_of_arrays,
     no_units_words,
@@ -38,8 +41,8 @@ def recognise_numpy_frfs(path: Path, options: FrfOptions) -> bool:
     except BadData:
         return False
     # A type of complex numbers in the header: hits and heights are real.
-    kinds = _COMPLEX_IN_HEADER
-    kinds = (*kinds, b"|O") if names_frfs(options.columns) else kinds
+    objects = (b"|O",) if names_frfs(options.columns) else ()
+    kinds = (*_COMPLEX_IN_HEADER, *objects)
     return head.startswith(NPY_MAGIC) and any(kind in head for kind in kinds)
 
 

@@ -23,9 +23,11 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.acquisition.formats.columns import (
+from jointbench.acquisition.formats.column_roles import (
     QUANTITY_NAMES,
     RATE_EXAMPLE,
+)
+from jointbench.acquisition.formats.columns import (
     SKIP,
     Column,
     only_roles,
@@ -48,7 +50,7 @@ _TABLE = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Rows:
+class _SampleRows:
     """The samples of one column of ``--columns``: one row for each hit or sensor."""
 
     column: Column
@@ -101,6 +103,7 @@ def what_arrays_hold(path: Path, arrays: Arrays) -> str:
     """Return the message for a file of arrays without units: what to type."""
     held = [f"{shown(n)} {a.shape}" for n, a in list(arrays.items())[:12]]
     names = [n for n, a in arrays.items() if a.size > 1 and a.dtype.kind in "fiu"]
+    names.sort(key=lambda name: (not _ascends(arrays[name]), name[:1].lower() != "f"))
     roles = (_TIME, "force", *["acceleration"] * 4)
     units = {_TIME: "s", "force": "N", "acceleration": "m/s^2"}
     pairs = list(zip(roles, names, strict=False))
@@ -110,6 +113,12 @@ def what_arrays_hold(path: Path, arrays: Arrays) -> str:
         f"describe them, for example --columns "
         f"'{example if len(pairs) > 1 else ARRAYS_EXAMPLE}'"
     )
+
+
+def _ascends(array: NDArray[Any]) -> bool:
+    """Return whether an array is one row of ascending numbers, as times are."""
+    row = np.squeeze(array)
+    return row.ndim == 1 and bool(np.all(np.diff(row) > 0))
 
 
 def _array(path: Path, arrays: Arrays, column: Column) -> NDArray[Any]:
@@ -137,7 +146,9 @@ def _array(path: Path, arrays: Arrays, column: Column) -> NDArray[Any]:
     return np.atleast_2d(whole)
 
 
-def _rows(path: Path, table: NDArray[Any], column: Column, length: int | None) -> _Rows:
+def _rows(
+    path: Path, table: NDArray[Any], column: Column, length: int | None
+) -> _SampleRows:
     """Return a table with the samples along its rows."""
     first, second = table.shape
     name = shown(column.label or column.role)
@@ -152,10 +163,10 @@ def _rows(path: Path, table: NDArray[Any], column: Column, length: int | None) -
             "read either way; save each hit as a separate variable"
         )
     along_rows = second > first if length is None else second == length
-    return _Rows(column, np.asarray(table if along_rows else table.T, np.float64))
+    return _SampleRows(column, np.asarray(table if along_rows else table.T, np.float64))
 
 
-def _hits(path: Path, rows: Sequence[_Rows]) -> list[list[_Rows]]:
+def _hits(path: Path, rows: Sequence[_SampleRows]) -> list[list[_SampleRows]]:
     """Return the rows of each hit."""
     counts = [one.values.shape[0] for one in rows]
     if len(set(counts)) == 1:
@@ -176,7 +187,7 @@ def _hits(path: Path, rows: Sequence[_Rows]) -> list[list[_Rows]]:
     )
 
 
-def _is_force(one: _Rows) -> bool:
+def _is_force(one: _SampleRows) -> bool:
     return one.column.role == "force"
 
 
@@ -238,7 +249,7 @@ def require_rate(path: Path, rate: float, stated: float | None) -> None:
 
 def _recording(
     path: Path,
-    rows: Sequence[_Rows],
+    rows: Sequence[_SampleRows],
     rate: float,
     options: SampleOptions,
     names: tuple[str, str],

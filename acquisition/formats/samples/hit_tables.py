@@ -19,9 +19,11 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_digest
+from jointbench.acquisition.formats.column_roles import (
+    RATE_EXAMPLE,
+)
 from jointbench.acquisition.formats.columns import (
     HITS_EXAMPLE,
-    RATE_EXAMPLE,
     Column,
     only_roles,
     parse_columns,

@@ -16,9 +16,12 @@ from jointbench.acquisition.basics.errors import FormatError, UnitError
 from jointbench.acquisition.basics.units import is_unit
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
-from jointbench.acquisition.formats.columns import RATE_EXAMPLE, roles_named
+from jointbench.acquisition.formats.column_roles import (
+    RATE_EXAMPLE,
+    roles_named,
+)
 from jointbench.acquisition.formats.even_steps import fit_even_steps, roundest
-from jointbench.acquisition.formats.labelled_arrays import (
+from jointbench.acquisition.formats.netcdf_arrays import (
     LabelledArray,
     read_labelled_arrays,
 )

@@ -16,6 +16,10 @@ from jointbench.acquisition.basics.units import is_unit, to_si
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
 from jointbench.acquisition.formats.even_steps import roundest
+from jointbench.acquisition.formats.mat_contents import (
+    plain_arrays,
+    read_mat,
+)
 from jointbench.acquisition.formats.samples.array_recordings import (
     recordings_of_arrays,
 )
@@ -31,8 +35,6 @@ from jointbench.acquisition.formats.stated_channels import (
 )
 from jointbench.acquisition.formats.testlab_structs import (
     Struct,
-    plain_arrays,
-    read_mat,
     struct_axis,
     struct_labels,
     struct_unit,

@@ -24,7 +24,7 @@ from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.hdf5_guards import FileLimits, open_guarded
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
-from jointbench.acquisition.formats.labelled_arrays import NETCDF_SUFFIXES
+from jointbench.acquisition.formats.netcdf_arrays import NETCDF_SUFFIXES
 from jointbench.acquisition.formats.samples.labelled_recording import (
     read_labelled_recordings,
 )

@@ -122,7 +122,7 @@ def read_universal(
 def _hits(
     channels: Sequence[StatedChannel], entities: Sequence[str], columns: str | None
 ) -> list[list[int]]:
-    """Return the histories of each hit; `columns` may say what each is."""
+    """Return the histories of each hit; `columns` may state what each is."""
     if columns is not None and any(one.quantity is None for one in channels):
         wanted = parse_columns(columns)
         if len(channels) % len(wanted) == 0 and not any(c.label for c in wanted):

@@ -54,7 +54,10 @@ Preload = Annotated[
     ),
 ]
 Sessions = Annotated[
-    list[Path] | None, typer.Argument(metavar="SESSION", help="Session files (.h5).")
+    list[Path] | None,
+    typer.Argument(
+        metavar="SESSION", help="Sessions (.h5), files of hits or files of FRFs."
+    ),
 ]
 Rate = Annotated[
     str | None,

@@ -101,7 +101,8 @@ def plain_unit(text: str) -> str:
     parts = text.split()
     if len(parts) < 2 or not all(_POWER.fullmatch(p) or p.isalpha() for p in parts):
         return text
-    above, below = [], []
+    above: list[str] = []
+    below: list[str] = []
     for part in parts:
         match = _POWER.fullmatch(part)
         power = int(match[2]) if match else 1
