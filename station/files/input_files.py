@@ -57,6 +57,8 @@ def parse_rate(text: str | float | None) -> float | None:
     """
     if text is None:
         return None
+    if not isinstance(text, str | int | float):
+        raise UsageError(f"the rate is {text!r}; give it in Hz, or as '25.6 kHz'")
     value = parse_value(text, "frequency") if isinstance(text, str) else float(text)
     if not 0.0 < value < math.inf:
         raise UsageError(f"--rate is {text!r}; it must be above zero, e.g. '25.6 kHz'")

@@ -16,10 +16,15 @@ from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.joints.model_kind import describes_structure
 from jointbench.station.joints.modes_of_files import modes_of_files
+from jointbench.station.library.argument_checks import (
+    checked_band,
+    one_path,
+    require_lists,
+    require_texts,
+)
 from jointbench.station.library.measurements import (
     Files,
     Measurement,
-    one_path,
     paths_of,
 )
 from jointbench.station.library.result_view import ResultView, Shown
@@ -106,6 +111,9 @@ def identify(
         UsageError: a lumped bench without a session.
     """
     path = one_path(model, "a model")
+    band = checked_band(band)
+    require_texts("'frf:m/s^2/N'", columns=columns)
+    require_lists("['face-a.csv']", surface=surface)
     options = FrfOptions(columns, averages=averages)
     if isinstance(source, Measurement):
         sessions = source.files

@@ -10,6 +10,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.formats.columns import HITS_EXAMPLE
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
@@ -22,6 +23,7 @@ from jointbench.station.files.input_files import (
     refuse_twice,
 )
 from jointbench.station.files.session_place import check_session_name
+from jointbench.station.library.argument_checks import one_path, require_texts
 from jointbench.station.library.labelled_arrays import dataset
 from jointbench.station.library.line_plot import AxisView, Curve, line_plot
 from jointbench.station.library.result_view import ResultView, Shown
@@ -166,6 +168,7 @@ def open_measurement(
         UsageError: the same data twice.
     """
     paths = paths_of(files)
+    require_texts(f"{HITS_EXAMPLE!r}", columns=columns, point=point)
     refuse_twice(paths)
     options = SampleOptions(columns, point, rate=parse_rate(rate))
     recordings: list[Recording] = []
@@ -200,8 +203,15 @@ def record(url: str, out: str | Path, *, overwrite: bool = False) -> Measurement
     Raises:
         UsageError: the URL is unknown, or the file is there already.
     """
-    path = Path(out)
+    if not isinstance(url, str):
+        raise UsageError(
+            f"{url!r} is no source; give the URL of a bench, for example "
+            "'sim:two-body?seed=1&hits=10'"
+        )
+    path = one_path(out, "the session to write")
     check_session_name(path)
+    if path.exists() and not overwrite:
+        raise UsageError(f"'{path}' is there already; overwrite=True replaces it")
     written = record_session_file(url, path, overwrite=overwrite)
     session = written.session
     return Measurement(
@@ -223,21 +233,6 @@ def paths_of(files: Files) -> tuple[Path, ...]:
     if not given:
         raise UsageError("no file is given; name at least one")
     return tuple(Path(one) for one in given)
-
-
-def one_path(name: str | Path, what: str) -> Path:
-    """Return the name of one file or folder as a path.
-
-    Args:
-        name: as given.
-        what: what the file is, for the message: ``"a model"``.
-
-    Raises:
-        UsageError: it is no file name.
-    """
-    if not isinstance(name, str | Path) or not str(name):
-        raise UsageError(f"{name!r} is no file name; give the path of {what}")
-    return Path(name)
 
 
 def _counted(found: Measurement) -> str:

@@ -116,7 +116,7 @@ def _of_structs(
             steps.append(increment * to_si(label, "time"))
     hits = hits_of_channels(channels, keys)
     found = []
-    for number, hit in enumerate(hits, 1):
+    for count, hit in enumerate(hits, 1):
         rate = _rate(path, [steps[i] for i in hit])
         found.append(
             recording_of(
@@ -126,7 +126,7 @@ def _of_structs(
                 columns=options.columns,
                 point=options.point,
                 layout=_TESTLAB,
-                name=path.stem + (f"-{number}" if len(hits) > 1 else ""),
+                name=path.stem + (f"-{count}" if len(hits) > 1 else ""),
             )
         )
     return tuple(found)
