@@ -111,3 +111,14 @@ def units_words(table: Table) -> str:
             what = f"the unit {shown(unit)} is not known" if unit else "states no unit"
             return f"{words}, but of column {number} ({shown(name)}) {what}"
     return f"{words}; that is not one time and what was measured over it"
+
+
+def header_names(table: Table) -> tuple[str, ...]:
+    """Return the cells of the last header line, one a column; empty where they differ.
+
+    Args:
+        table: as read, with the lines above its numbers.
+    """
+    lines = [line for line in table.header if line.strip()]
+    cells = _cells(lines[-1], table) if lines else []
+    return tuple(cells) if len(cells) == table.values.shape[0] else ()

@@ -21,11 +21,14 @@ from jointbench.station.commands.shared_options.input_options import (
     Columns,
     Files,
     FullScale,
+    Guess,
     HitFiles,
+    Picture,
     Point,
     Preload,
     Rate,
     SurfaceFiles,
+    Yes,
 )
 from jointbench.station.commands.shared_options.joint_options import Model
 from jointbench.station.commands.shared_options.mode_fit_options import (
@@ -63,32 +66,42 @@ def import_command(
     rate: Rate = None,
     preload: Preload = None,
     full_scale: FullScale = None,
+    guess: Guess = False,
+    yes: Yes = False,
+    picture: Picture = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
     """Import hits and surfaces from foreign files into a session.
 
-    Plain tables (.csv, .txt, .npy) need --columns. A file without units is refused.
+    Plain tables (.csv, .txt, .npy) need --columns, samples without times --rate. A
+    file without units is refused. --guess proposes columns, units and rate, shows
+    the first hit, and writes only with --yes or on confirmation.
 
     Examples:
         jointbench import hit1.npy hit2.npy --out session.h5 --columns
         'time:s,force:N,acceleration:m/s^2'
+        jointbench import hits.csv --out session.h5 --guess --picture hits.html
         jointbench import trace.txt --out session.h5 --columns 'x:um,z:um'
         --preload '4 kN'
     """
     from jointbench.acquisition.formats.samples.sample_format import SampleOptions
-    from jointbench.station.commands.import_command import run_import
+    from jointbench.station.commands.import_command import ImportRequest, run_import
     from jointbench.station.files.input_files import parse_rate
 
-    run_import(
-        files,
-        out,
-        options=SampleOptions(columns, point, full_scale, parse_rate(rate)),
-        preload=preload,
-        overwrite=force,
-        json_target=json,
-    )
+    options = SampleOptions(columns, point, full_scale, parse_rate(rate))
+    request = ImportRequest(options, preload, overwrite=force, json_target=json)
+    if guess:
+        from jointbench.station.commands.guess_command import GuessRequest, run_guess
+
+        run_guess(files, out, request, GuessRequest(yes=yes, picture=picture))
+        return
+    if yes or picture is not None:
+        from jointbench.acquisition.basics.errors import UsageError
+
+        raise UsageError("--yes and --picture belong to --guess; add it")
+    run_import(files, out, request)
 
 
 def modal_command(

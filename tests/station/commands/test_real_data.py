@@ -11,7 +11,7 @@ import pytest
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.surfaces import Areal, all_valid
 from jointbench.simulators.rough_surfaces.surface_files import write_keyence_csv
-from jointbench.station.commands.import_command import run_import
+from jointbench.station.commands.import_command import ImportRequest, run_import
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.commands.surface_command import run_surface
 
@@ -47,9 +47,7 @@ def modes(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, float]]:
     run_import(
         files,
         session,
-        options=SampleOptions(COLUMNS),
-        overwrite=False,
-        json_target=None,
+        ImportRequest(SampleOptions(COLUMNS), overwrite=False, json_target=None),
     )
     run_modal([session], json_target=str(found))
     content: list[dict[str, float]] = json.loads(found.read_text())["modes"]
