@@ -18,14 +18,14 @@ from jointbench.signal.hits.pulse_duration import time_scale_words
 PULSE_SHARE = 0.03
 """Share of samples above a tenth of the peak below which a record is a pulse [-]: a
 hammer's pulse of 5 ms in a record of 0.17 s; a decay of 1 % damping has 40 periods."""
-RINGING_SHARE = 0.1
+_RINGING_SHARE = 0.1
 """Share above which it is a decay, not a pulse [-]."""
 _TENTH = 0.1
 _SWING = 0.3
 """Largest opposite peak of a pulse, of its peak [-]: beyond it, it swings."""
 _ONE_G = 0.04
 """Relative tolerance of a constant offset that is gravity [-]."""
-LARGEST_ACCELERATION = 2e5
+_LARGEST_ACCELERATION = 2e5
 """[m/s^2]: 20,000 g; shock accelerometers of metal strikes end there."""
 _MOST_SAMPLES = 2_000_000
 
@@ -119,7 +119,7 @@ def _findings(recording: Recording) -> Iterator[tuple[str, str]]:
         if channel.quantity is not Quantity.FORCE
     ]
     pulses = [channel.name for channel, values in responses if is_pulse(values)]
-    if active_share(force) > RINGING_SHARE and pulses:
+    if active_share(force) > _RINGING_SHARE and pulses:
         yield (
             "swapped",
             f"{name!r} rings down as a response does and {pulses[0]!r} is a short "
@@ -144,7 +144,7 @@ def _of_acceleration(channel: Channel, values: FloatArray) -> Iterator[tuple[str
     peak = float(np.abs(values).max(initial=0.0))
     offset = abs(float(np.median(values)))
     in_g = channel.unit.strip() in ("g", "gn")
-    if peak > LARGEST_ACCELERATION and in_g:
+    if peak > _LARGEST_ACCELERATION and in_g:
         yield (
             "gravity",
             f"{channel.name!r} reaches {peak / STANDARD_GRAVITY:.3g} g, which no "

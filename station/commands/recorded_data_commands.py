@@ -91,16 +91,19 @@ def import_command(
     from jointbench.station.files.input_files import parse_rate
 
     options = SampleOptions(columns, point, full_scale, parse_rate(rate))
-    request = ImportRequest(options, preload, overwrite=force, json_target=json)
     if guess:
-        from jointbench.station.commands.guess_command import GuessRequest, run_guess
+        from jointbench.station.guess.run_guess import GuessRequest, run_guess
 
-        run_guess(files, out, request, GuessRequest(yes=yes, picture=picture))
-        return
-    if yes or picture is not None:
+        asked = GuessRequest(yes=yes, picture=picture)
+        confirmed = run_guess(files, out, options, asked, json)
+        if confirmed is None:
+            return
+        options = confirmed
+    elif yes or picture is not None:
         from jointbench.acquisition.basics.errors import UsageError
 
         raise UsageError("--yes and --picture belong to --guess; add it")
+    request = ImportRequest(options, preload, overwrite=force, json_target=json)
     run_import(files, out, request)
 
 

@@ -57,7 +57,7 @@ class ProposedColumn:
 
 
 @dataclass(frozen=True, slots=True)
-class Proposal:
+class ColumnProposal:
     """Options of an import, to be confirmed.
 
     Attributes:
@@ -73,7 +73,7 @@ class Proposal:
     items: tuple[ProposedColumn, ...]
 
 
-def propose(raw: RawFile, rate: float | None = None) -> Proposal:
+def propose(raw: RawFile, rate: float | None = None) -> ColumnProposal:
     """Propose roles, units and rate of the columns of a file.
 
     Args:
@@ -100,10 +100,12 @@ def propose(raw: RawFile, rate: float | None = None) -> Proposal:
     wanted = [_labelled(one, raw) for one in items]
     text = ",".join(one for one in wanted if one)
     if time is not None:
-        return Proposal(text, None, "", tuple(items))
+        return ColumnProposal(text, None, "", tuple(items))
     stated = rate if rate is not None else raw.rate
     reason = "--rate" if rate is not None else raw.rate_words
-    return Proposal(text, stated, reason or "not stated: pass --rate", tuple(items))
+    return ColumnProposal(
+        text, stated, reason or "not stated: pass --rate", tuple(items)
+    )
 
 
 def _labelled(one: ProposedColumn, raw: RawFile) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Columns of a file before anyone has said what they hold."""
+"""Columns of a file before it is stated what they hold."""
 
 import re
 from collections.abc import Mapping

@@ -75,6 +75,13 @@ def recordings_of_arrays(
         FormatError: an array is missing, or holds no rows of numbers.
         SamplingError: shapes or times do not fit each other.
     """
+    for name, array in arrays.items():
+        if "ordinate" in (array.dtype.names or ()):
+            raise FormatError(
+                f"{named(path)}: {shown(name)} holds records of SDynPy, without units; "
+                "save the arrays, numpy.savez(name, t=d.abscissa[0], y=d.ordinate), or "
+                "write a universal file"
+            )
     if options.columns is None:
         raise UnitError(what_arrays_hold(path, arrays))
     wanted = [c for c in parse_columns(options.columns) if c.role != SKIP]

@@ -13,11 +13,10 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.hits.plausibility import plausibility_words, struck_mass
-from jointbench.station.commands.import_command import ImportRequest, run_import
 from jointbench.station.files.input_files import read_foreign
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.guess.picture import block_rows, write_picture
-from jointbench.station.guess.propose import ASSUMED, Proposal, propose
+from jointbench.station.guess.propose import ASSUMED, ColumnProposal, propose
 from jointbench.station.guess.raw_columns import read_raw_columns
 from jointbench.station.screen.terminal import console, table, write_json
 
@@ -38,28 +37,33 @@ class GuessRequest:
 
 
 def run_guess(
-    files: Sequence[Path], out: Path, request: ImportRequest, guess: GuessRequest
-) -> bool:
-    """Propose how `files` are read, show the first hit, and import on confirmation.
+    files: Sequence[Path],
+    out: Path,
+    given: SampleOptions,
+    guess: GuessRequest,
+    json_target: str | None,
+) -> SampleOptions | None:
+    """Propose how `files` are read, show the first hit, and have it confirmed.
 
     Args:
         files: hits of one kind; the first one is looked at.
-        out: session file.
-        request: options as given; what they state is not guessed.
+        out: session file that is to be written.
+        given: options as typed; what they state is not guessed.
         guess: how to show and confirm.
+        json_target: where the JSON goes.
 
     Returns:
-        Whether the session was written.
+        The options of the import once they are confirmed, else None.
 
     Raises:
         BadData: a file cannot be read.
         UsageError: nothing can be proposed; the message has what is missing.
     """
-    check_outputs([*files, out], [request.json_target, guess.picture])
-    options, proposal = _proposed(files[0], request.options)
+    check_outputs([*files, out], [json_target, guess.picture])
+    options, proposal = _proposed(files[0], given)
     found = _read(files, options)
     notes = _notes(found, proposal)
-    screen = console(request.json_target)
+    screen = console(json_target)
     if proposal is not None:
         rows = [(one.name or "-", one.item, one.reason) for one in proposal.items]
         screen.print(table(str(files[0]), ("column", "proposal", "reason"), rows))
@@ -77,15 +81,14 @@ def run_guess(
     if not (guess.yes or _confirmed(out)):
         screen.print(f"nothing was written to {out}; add --yes to write it")
         content = {"written": False, "command": command, "notes": notes}
-        write_json(request.json_target, content)
-        return False
-    run_import(files, out, replace(request, options=options))
-    return True
+        write_json(json_target, content)
+        return None
+    return options
 
 
 def _proposed(
     path: Path, given: SampleOptions
-) -> tuple[SampleOptions, Proposal | None]:
+) -> tuple[SampleOptions, ColumnProposal | None]:
     """Return the options of an import, and the proposal where the file needs one."""
     try:
         records = read_foreign(path, given)
@@ -104,7 +107,7 @@ def _proposed(
 
 def _proposal(
     path: Path, given: SampleOptions, error: UsageError | BadData
-) -> Proposal:
+) -> ColumnProposal:
     try:
         found = propose(read_raw_columns(path), given.rate)
     except (UsageError, BadData):
@@ -127,7 +130,7 @@ def _read(files: Sequence[Path], options: SampleOptions) -> list[Recording]:
     return [one for one in records if isinstance(one, Recording)]
 
 
-def _notes(found: Sequence[Recording], proposal: Proposal | None) -> list[str]:
+def _notes(found: Sequence[Recording], proposal: ColumnProposal | None) -> list[str]:
     """Return what to look at before confirming."""
     notes = [f"warning: {words}" for words in plausibility_words(found)]
     mass = struck_mass(found[0])
