@@ -209,10 +209,12 @@ def start() -> tuple[multiprocessing.Process, Connection]:
     return child, ours  # type: ignore[return-value]
 
 
-def fuzz(files: int, seed: int, folder: Path) -> tuple[Counter, list[str], float]:
+def fuzz(
+    files: int, seed: int, folder: Path, make: Callable[[Path], None] = sound_files
+) -> tuple[Counter, list[str], float]:
     """Read mutated files; return what became of them, and what must not be."""
     draw = random.Random(seed)
-    sound_files(folder)
+    make(folder)
     sound = {name: (folder / file).read_bytes() for name, (file, _) in READERS.items()}
     found: Counter = Counter()
     wrong: list[str] = []
