@@ -66,6 +66,11 @@ class ChainBenchSettings:
     pair_fits: int = numerical(
         5, "fits", "best fits to which a further effect is added"
     )
+    least_force: float = numerical(
+        0.05, "-", "force of a line over the largest below which an FRF is not shown"
+    )
+    draws: int = numerical(400, "draws", "of the inputs, for the interval of a cause")
+    seed: int = numerical(298, "-", "of these draws, so that a run can be repeated")
 
 
 CHAIN = ChainBenchSettings()

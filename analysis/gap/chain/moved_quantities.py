@@ -12,13 +12,11 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.gap.chain.chain_diagnosis import ChainDiagnosis
+from jointbench.analysis.gap.chain.chain_settings import CHAIN
 from jointbench.analysis.gap.chain.lumped_structure import FittedState, LumpedStructure
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 from jointbench.analysis.lumped.lumped_modes import solve_modes
-
-_LEAST_FORCE = 0.05
-"""Force of a line over the largest below which an FRF is not shown [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -227,7 +225,7 @@ def _frfs(
     spectrum = np.fft.rfft(force, axis=1)
     power = np.sum(np.abs(spectrum) ** 2, axis=0)
     frequency = np.fft.rfftfreq(force.shape[1], 1.0 / sample_rate)
-    seen = (power > _LEAST_FORCE**2 * power.max()) & (frequency > 0)
+    seen = (power > CHAIN.least_force**2 * power.max()) & (frequency > 0)
     frfs = [
         np.asarray(
             np.sum(np.fft.rfft(r, axis=1) * spectrum.conj(), axis=0)[seen] / power[seen]

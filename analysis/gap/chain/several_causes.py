@@ -29,9 +29,6 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-_DRAWS = 400
-_SEED = 298
-
 
 @dataclass(frozen=True, slots=True)
 class Cause:
@@ -208,10 +205,10 @@ def _explained(
 
 def _draws(fit: Fit) -> FloatArray:
     """Return the fit and draws of its posterior, shape (1 + n_draws, n)."""
-    random = np.random.default_rng(_SEED)
+    random = np.random.default_rng(CHAIN.seed)
     value, vector = np.linalg.eigh(fit.covariance)
     root = vector * np.sqrt(np.maximum(value, 0.0))
-    drawn = fit.x + random.standard_normal((_DRAWS, value.size)) @ root.T
+    drawn = fit.x + random.standard_normal((CHAIN.draws, value.size)) @ root.T
     bounds = [p.bounds for c in fit.candidates for p in c.effect.parameters]
     if bounds:
         low, high = np.array(bounds).T

@@ -9,10 +9,8 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.surface_bench.surface_bench import SurfaceBench
 from jointbench.analysis.gap.surface_bench.surface_rows import SurfaceRows
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
-_CELLS = 600
-_LOWEST = 0.05
-"""Lowest wavenumber over that of the length of a line [-]."""
 _LEGENDRE = (2, 3)
 
 
@@ -61,8 +59,8 @@ def predicted_structure(bench: SurfaceBench, fit: Fit, lag: FloatArray) -> Float
         lag: [m], shape (n,).
     """
     state, sample = bench.state(fit.base, fit.terms), bench.rows.sample
-    lowest = 2 * np.pi * _LOWEST / sample.points
-    edge = np.geomspace(lowest, np.pi, _CELLS + 1)
+    lowest = 2 * np.pi * SURFACE.structure_lowest / sample.points
+    edge = np.geomspace(lowest, np.pi, SURFACE.structure_cells + 1)
     omega = np.sqrt(edge[1:] * edge[:-1])
     density = state.sampled(omega, sample.transfer) * np.diff(edge)
     steps = lag / sample.pitch

@@ -24,7 +24,6 @@ from jointbench.signal.band_limited.line_sample import LineSample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 
 LONGER = "measure a profile three times as long"
-FINISH_HURST = 0.5
 
 
 def free_shape(row: str, lower: float = -6.0, upper: float = 6.0) -> Parameter:
@@ -66,7 +65,9 @@ def _cut(values: FloatArray, state: SurfaceState, sample: LineSample) -> Surface
     corner = fine / sample.pitch
     level = finish / sample.scale**2
     pivot = 2 * np.pi / corner
-    added = BandLimited(level * corner / (4 * np.pi**2), pivot, FINISH_HURST, corner)
+    added = BandLimited(
+        level * corner / (4 * np.pi**2), pivot, SURFACE.finish_hurst, corner
+    )
     state = replace(state, process=process, finish=added)
     state = state.shifted(ShapeRow.SKEWNESS, skewness)
     state = state.shifted(ShapeRow.BEND_SKEWNESS, bend)

@@ -7,17 +7,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Profile, Surface
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 from jointbench.signal.surface.levelling import level
 from jointbench.signal.surface.periodic_marks import periodic_marks
-
-_MOST_TEETH = 5
-_FEWEST_WAVES = 5.0
-_STAGES = ((0.3, 6), (0.05, 12), (0.008, 30), (0.001, 80), (0.0002, 80))
-"""Half width of a search over waves per line [-], and harmonics in it: many fix the
-wavelength precisely, few find it."""
-_TRIALS = 9
-_GAIN = 0.01
-"""Least share of the power by which more teeth must explain more [-]."""
 
 _ALIASES, _MOST_TAKEN = 6.0, 0.15
 """Times half the sampling up to which harmonics are fitted, and largest share of all
@@ -58,14 +50,14 @@ def repeated_marks(surface: Surface) -> RepeatedMarks | None:
     points = heights.size
     first = points * surface.spacing / found.wavelength
     # The strongest wave may be a harmonic of a cutter with several teeth.
-    waves = [first / teeth for teeth in range(1, _MOST_TEETH + 1)]
-    tried = [_refined(heights, one) for one in waves if one >= _FEWEST_WAVES]
+    waves = [first / teeth for teeth in range(1, SURFACE.most_teeth + 1)]
+    tried = [_refined(heights, one) for one in waves if one >= SURFACE.fewest_waves]
     if not tried:
         return None
     wave, most = tried[0], _gain(heights, tried[0])
     for one in tried[1:]:
         gain = _gain(heights, one)
-        if gain > (1 + _GAIN) * most:
+        if gain > (1 + SURFACE.teeth_gain) * most:
             wave, most = one, gain
     # Sharp edges have harmonics beyond half the sampling, which alias.
     zones = min(_ALIASES, _MOST_TAKEN * wave)
@@ -83,9 +75,9 @@ def repeated_marks(surface: Surface) -> RepeatedMarks | None:
 
 def _refined(heights: FloatArray, wave: float) -> float:
     """Return the waves per line at which harmonics explain most."""
-    for reach, count in _STAGES:
+    for reach, count in SURFACE.mark_stages:
         count = max(1, min(count, int(0.5 * heights.size / wave)))
-        places = wave + np.linspace(-reach, reach, _TRIALS)
+        places = wave + np.linspace(-reach, reach, SURFACE.mark_trials)
         power = [np.mean(_harmonics(heights, p, count) ** 2) for p in places]
         wave = float(places[int(np.argmax(power))])
     return wave
@@ -93,7 +85,7 @@ def _refined(heights: FloatArray, wave: float) -> float:
 
 def _gain(heights: FloatArray, wave: float) -> float:
     """Return the power of marks beyond what as many harmonics have by chance."""
-    count = max(1, min(_STAGES[-1][1], int(0.5 * heights.size / wave)))
+    count = max(1, min(SURFACE.mark_stages[-1][1], int(0.5 * heights.size / wave)))
     marks = _harmonics(heights, wave, count)
     chance = _neighbours(heights - marks, wave, count)
     return float(np.mean(marks**2)) - chance

@@ -9,13 +9,6 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
 from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
-_LEAST_GAPS = 20
-_OFF_STEP = 0.02
-_SAME = 1e-9
-_SURE = 0.05
-_COUNT_SD = 0.3
-_REPEATED = 4
-
 
 class ShapeRow(IntEnum):
     """Rows in their order."""
@@ -87,7 +80,7 @@ def shape_rows(lines: FloatArray, raw: FloatArray) -> ShapeRows:
     return ShapeRows(
         np.array([*moments, np.log1p(filled), grid]),
         expected,
-        np.array([*sd, _COUNT_SD, _SURE]),
+        np.array([*sd, SURFACE.count_sd, SURFACE.sure_sd]),
         step,
         filled,
         float(np.var(bends)),
@@ -140,12 +133,14 @@ def grid_step(heights: FloatArray) -> float:
     """
     met = np.unique(heights)
     gaps = np.diff(met)
-    gaps = gaps[gaps > _SAME * (met[-1] - met[0])] if met.size > 1 else gaps
-    if gaps.size < _LEAST_GAPS:
+    gaps = (
+        gaps[gaps > SURFACE.same_height * (met[-1] - met[0])] if met.size > 1 else gaps
+    )
+    if gaps.size < SURFACE.least_gaps:
         return 0.0
     steps = np.rint(gaps / gaps.min())
     step = float(gaps.sum() / steps.sum())
-    return step if np.all(np.abs(gaps / step - steps) < _OFF_STEP) else 0.0
+    return step if np.all(np.abs(gaps / step - steps) < SURFACE.off_step) else 0.0
 
 
 def filled_points(heights: FloatArray) -> int:
@@ -161,11 +156,13 @@ def filled_points(heights: FloatArray) -> int:
     if grid_step(rows) > 0:
         return 0
     scale = float(np.ptp(rows)) or 1.0
-    straight = np.abs(np.diff(rows, 2, axis=1)) <= _SAME * scale
+    straight = np.abs(np.diff(rows, 2, axis=1)) <= SURFACE.same_height * scale
     found = sum(_in_runs(row, SURFACE.straight_run - 2) for row in straight)
     _, counts = np.unique(rows, return_counts=True)
     repeats = int(counts.max())
-    return found + (repeats if repeats >= _REPEATED and found == 0 else 0)
+    return found + (
+        repeats if repeats >= SURFACE.repeated_heights and found == 0 else 0
+    )
 
 
 def _in_runs(marked: BoolArray, needed: int) -> int:

@@ -36,8 +36,6 @@ from jointbench.signal.surface.structure_function import (
 )
 
 FLOOR = 1e-30
-_FINE = 4
-_LEAST_BINS = 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -252,17 +250,19 @@ def _clear_of_leakage(sample: LineSample) -> LineSample:
 
     A blur can leave less there than the window passes of waves of the line's length.
     """
-    window = np.zeros(_FINE * sample.points)
+    window = np.zeros(SURFACE.fine_lines * sample.points)
     window[: sample.points] = fade(sample.points, WHOLE_TAPER)
     power = np.abs(np.fft.rfft(window)) ** 2 / np.sum(window**2) / (2 * np.pi)
     # Between its zeros: mean over one ordinate.
-    smooth = np.convolve(power, np.full(_FINE, 1 / _FINE), mode="same")
-    place = sample.omega * window.size / (2 * np.pi) - 1.5 * _FINE
+    smooth = np.convolve(
+        power, np.full(SURFACE.fine_lines, 1 / SURFACE.fine_lines), mode="same"
+    )
+    place = sample.omega * window.size / (2 * np.pi) - 1.5 * SURFACE.fine_lines
     leaked = np.interp(place, np.arange(smooth.size), smooth)
     clear = leaked < SURFACE.leaked_share * sample.power
     # From the first bin that is not clear on: noise beyond would be no surface.
     clear = np.logical_and.accumulate(clear)
-    if np.count_nonzero(clear) < _LEAST_BINS:
+    if np.count_nonzero(clear) < SURFACE.least_bins:
         return sample
     return replace(
         sample,

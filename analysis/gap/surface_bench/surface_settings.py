@@ -177,6 +177,81 @@ class SurfaceBenchSettings:
     folds: int = numerical(4, "-", "parts of the waves that are held out in turn")
     slope_step: float = numerical(1e-5, "-", "step of a difference by the base")
     interval_z: float = numerical(1.96, "sd", "half width of an interval of 95 %")
+    most_teeth: int = numerical(
+        5, "teeth", "teeth of a cutter in a revolution that are tried"
+    )
+    fewest_waves: float = numerical(
+        5.0, "waves", "waves on a line below which marks are not said to repeat"
+    )
+    mark_trials: int = numerical(
+        9, "trials", "wavelengths tried in each stage of the search for marks"
+    )
+    teeth_gain: float = numerical(
+        0.01, "-", "least share of the power by which more teeth must explain more"
+    )
+    least_gaps: int = numerical(
+        20, "gaps", "differences of heights below which no step of rounding is sought"
+    )
+    off_step: float = numerical(
+        0.02,
+        "steps",
+        "distance of a difference of heights from a whole number of rounding steps",
+    )
+    same_height: float = numerical(
+        1e-9,
+        "-",
+        "difference of two heights over their range below which they are the same",
+    )
+    sure_sd: float = numerical(
+        0.05, "-", "sd of a row that is known to be true or false"
+    )
+    count_sd: float = numerical(0.3, "-", "sd of the row of straight runs")
+    repeated_heights: int = numerical(
+        4, "points", "neighbouring points of one height that no rough surface has"
+    )
+    fine_lines: int = numerical(
+        4,
+        "-",
+        "zero padding of the transform in which waves are sought, over the length",
+    )
+    least_bins: int = numerical(
+        20, "lines", "lines of a band below which it is not searched for waves"
+    )
+    structure_cells: int = numerical(
+        600,
+        "cells",
+        "cells over the wavenumber of the integral for a structure function",
+    )
+    structure_lowest: float = numerical(
+        0.05,
+        "-",
+        "lowest wavenumber of that integral over that of the length of a line",
+    )
+    folded_images: int = numerical(
+        3, "-", "images of the spectrum on each side that sampling folds in"
+    )
+    largest_depth: float = numerical(
+        60.0,
+        "-",
+        "exponent of an attenuation above which it is complete, against underflow",
+    )
+    tip_lag: float = numerical(
+        3.0,
+        "samples",
+        "lag whose structure function gives a scale for the radius of a tip",
+    )
+    finish_hurst: float = numerical(
+        0.5, "-", "H of the finer process where the lines do not determine it"
+    )
+    decade_parts: int = numerical(
+        2, "-", "parts of a decade of wavelength that are shown as one row"
+    )
+    mark_stages: tuple[tuple[float, int], ...] = numerical(
+        ((0.3, 6), (0.05, 12), (0.008, 30), (0.001, 80), (0.0002, 80)),
+        "waves, -",
+        "half width of a search over waves per line, and harmonics in it: many fix the "
+        "wavelength precisely, few find it",
+    )
 
 
 SURFACE = SurfaceBenchSettings()

@@ -4,8 +4,7 @@
 import numpy as np
 
 from jointbench.analysis.gap.surface_bench.surface_rows import SurfaceRows
-
-_TIP_LAG = 3.0
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
 
 def surface_scales(rows: SurfaceRows) -> dict[str, float]:
@@ -17,8 +16,10 @@ def surface_scales(rows: SurfaceRows) -> dict[str, float]:
     sample = rows.sample
     noise = 2 * np.pi * sample.floor
     lag = rows.structure.lag
-    structure = np.interp(_TIP_LAG * sample.pitch, lag, rows.structure.value)
-    radius = (_TIP_LAG * sample.pitch) ** 2 / np.sqrt(max(float(structure), 1e-300))
+    structure = np.interp(SURFACE.tip_lag * sample.pitch, lag, rows.structure.value)
+    radius = (SURFACE.tip_lag * sample.pitch) ** 2 / np.sqrt(
+        max(float(structure), 1e-300)
+    )
     bend = np.sqrt(rows.shapes.bend)
     return {
         "one": 1.0,

@@ -6,14 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 from jointbench.signal.band_limited.known_transfer import KnownTransfer
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 
 ENDLESS = 1e9
 """Roll-off of a surface that has none [samples]."""
-_IMAGES = 3
-"""Images of the spectrum on each side that sampling folds in [-]."""
-_LARGEST_LOG = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +90,9 @@ class SurfaceState:
             transfer: what the instrument is known to do.
         """
         total = np.zeros_like(omega)
-        for k in range(-_IMAGES, _IMAGES + 1):
+        for k in range(-SURFACE.folded_images, SURFACE.folded_images + 1):
             total += self.density(np.abs(omega + 2 * np.pi * k))
-        edge = np.array(2 * np.pi * (_IMAGES + 0.5))
+        edge = np.array(2 * np.pi * (SURFACE.folded_images + 0.5))
         total += float(self.density(edge) * edge / self.process.hurst) / (2 * np.pi)
         return np.asarray(total * transfer.power(omega) + self.noise / (2 * np.pi))
 
@@ -122,7 +120,7 @@ class RoundingNoise:
         structure = 4 * (1 - self.cosine) @ (density * self.width)
         order = np.arange(1, 13)[:, None] ** 2
         depth = 2 * np.pi**2 * order * structure / step**2
-        sums = np.sum(np.exp(-np.minimum(depth, _LARGEST_LOG)) / order, axis=0)
+        sums = np.sum(np.exp(-np.minimum(depth, SURFACE.largest_depth)) / order, axis=0)
         sums[0] = np.pi**2 / 6
         return np.asarray(step**2 / (2 * np.pi**2) * sums)
 

@@ -7,8 +7,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.surface_bench.shape_rows import WORDS
 from jointbench.analysis.gap.surface_bench.surface_rows import SurfaceRows
-
-_DECADE_PARTS = 2
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
 
 def wave_labels(rows: SurfaceRows) -> list[str]:
@@ -20,8 +19,8 @@ def wave_labels(rows: SurfaceRows) -> list[str]:
     unit = 1e6 * rows.sample.pitch
     omega, found = rows.omega, []
     for one in omega[np.isfinite(omega)]:
-        part = np.floor(_DECADE_PARTS * np.log10(unit * 2 * np.pi / one))
-        low, high = (10 ** ((part + k) / _DECADE_PARTS) for k in (0, 1))
+        part = np.floor(SURFACE.decade_parts * np.log10(unit * 2 * np.pi / one))
+        low, high = (10 ** ((part + k) / SURFACE.decade_parts) for k in (0, 1))
         found.append(f"{low:.3g} to {high:.3g} um")
     if rows.marks is not None:
         found.append("marks that repeat")
