@@ -11,6 +11,7 @@ from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.commands.identify_links_command import run_identify
 from jointbench.station.gap.line_files import LineRequest, read_lines
+from jointbench.station.joints.structure_states import measured_states
 
 MASS, SUPPORT, JOINT = (9.0, 4.6), 2.2e7, 6e7
 BENCH = """
@@ -73,6 +74,15 @@ def test_links_are_identified_from_frfs(netcdf: Path, tmp_path: Path) -> None:
         assert one.identifiable
         assert one.sd < 0.01 * wanted
         assert abs(one.value - wanted) < 3 * one.sd + 1e-3 * wanted
+
+
+def test_a_file_of_frfs_is_a_state_of_a_structure(netcdf: Path) -> None:
+    """Named after the file, without a preload of its own, with intervals."""
+    states = measured_states([netcdf], None, FrfOptions())
+    model = states["frf"].chain.result.model
+    assert states["frf"].preload is None
+    assert model.outputs == ("a0", "a1")
+    assert np.all(model.frequency_sd > 0)
 
 
 def test_gap_refuses_frfs_with_the_reason_and_the_way_out(netcdf: Path) -> None:
