@@ -135,6 +135,45 @@ def export_joint_command(
     return 0 if good else EXIT_QUALITY
 
 
+def agreement_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL", help="Model (TOML): meshed bodies with [joints]."
+        ),
+    ],
+    identified: Annotated[
+        Path,
+        typer.Argument(
+            metavar="JSON", help="Identified joints: 'jointbench identify --json'."
+        ),
+    ],
+    sessions: Sessions = None,
+    band: Band = None,
+    cache: Cache = None,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Compare measured and computed modes and FRFs.
+
+    Modes are paired in place and direction: MAC, CoMAC, FRAC, differences of frequency
+    and damping with intervals, and points with a doubtful sign, label or axis. The
+    exit code is 5 if there is such a point.
+
+    Examples:
+        jointbench agreement plates.toml joint.json session.h5 --report agreement.html
+    """
+    from jointbench.station.agreement.run_agreement import (
+        AgreementOutputs,
+        run_agreement,
+    )
+
+    outputs = AgreementOutputs(report, json, cache)
+    good = run_agreement(model, identified, sessions or [], band=band, outputs=outputs)
+    return 0 if good else EXIT_QUALITY
+
+
 def gap_command(
     sources: GapSources,
     model: Model = None,
