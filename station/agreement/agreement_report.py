@@ -71,8 +71,10 @@ def _tiles(one: Agreement) -> list[Tile]:
 
 
 def _items(at: int, one: Agreement) -> list[Item]:
-    kind = "notice" if one.suspects else "text"
-    items: list[Item] = [Text(sentence, kind) for sentence in sentences(one)]
+    words = sentences(one)
+    items: list[Item] = [
+        Text(word, "notice") if one.suspects else Text(word) for word in words
+    ]
     caption = "Computed less measured, with 95 % intervals."
     columns, cells = coordinate_rows(one)
     items += [

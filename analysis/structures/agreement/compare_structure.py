@@ -21,7 +21,7 @@ from jointbench.analysis.structures.agreement.paired_modes import (
     pair_mode_sets,
 )
 from jointbench.analysis.structures.agreement.suspect_coordinates import (
-    Coordinates,
+    ShapesAtPlaces,
     Suspect,
     find_suspects,
 )
@@ -130,23 +130,18 @@ def compare_structure(
     computed, shapes, axes = _computed_set(model, values, places, covariance)
     pairs, likeness = pair_mode_sets(measured, computed)
     left = [one.measured for one in pairs]
-    right = [one.computed for one in pairs]
-    own = computed.shapes[right]
+    own = computed.shapes[[one.computed for one in pairs]]
     lines = _lines(frf, band or frf.usable_band or whole)
     found = _computed_frf(model, values, places, frf, lines)
     response = frf.response[:, :, lines]
-    suspects: tuple[Suspect, ...] = ()
-    if pairs:
-        coordinates = Coordinates(
-            own.real,
-            shapes[1][right],
-            axes[right].reshape(len(right), -1, 3),
-            places.along,
-            (modes.outputs, modes.inputs),
-        )
-        suspects = find_suspects(
-            measured.constants[left], measured.constants_sd[left], coordinates
-        )
+    coordinates = ShapesAtPlaces(
+        computed.frequency,
+        computed.shapes.real,
+        shapes[1],
+        axes.reshape(computed.frequency.size, -1, 3),
+        places.along,
+        (modes.outputs, modes.inputs),
+    )
     return Agreement(
         measured=measured,
         computed=computed,
@@ -160,7 +155,7 @@ def compare_structure(
         measured_frf=response,
         computed_frf=found,
         frac=frac(response, found),
-        suspects=suspects,
+        suspects=find_suspects(measured, coordinates),
         outputs=modes.outputs,
         inputs=modes.inputs,
     )

@@ -10,9 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
+from jointbench.analysis.structures.agreement.paired_modes import ModeSet
 
 # Relative error of a modal constant that is no fault of a label: sensitivity of two
 # sensors, aim and small differences of the model.
@@ -23,6 +25,11 @@ _FALSE = 1e-3
 # Residual of an alternative over that of the labels as given, at most.
 _FALLS = 0.6
 _MOST = 4
+# Relative frequency error of a model whose joints were identified; modes are paired
+# anew for each alternative, because a wrong sign also spoils the MAC ...
+_FREQUENCY_SD = 0.03
+# ... but not beyond this distance in ln.
+_FARTHEST = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +54,19 @@ class Suspect:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Coordinates:
-    """Computed shapes of paired modes at all places and axes.
+class ShapesAtPlaces:
+    """Computed shapes at all places and axes.
 
     Attributes:
-        outputs: shapes at the outputs, shape (n_pairs, n_outputs).
-        inputs: shapes at the hit points, shape (n_pairs, n_inputs).
-        axes: shapes at the outputs along x, y, z, shape (n_pairs, n_outputs, 3).
+        frequency: of the modes [Hz], shape (n_modes,).
+        outputs: shapes at the outputs, shape (n_modes, n_outputs).
+        inputs: shapes at the hit points, shape (n_modes, n_inputs).
+        axes: shapes at the outputs along x, y, z, shape (n_modes, n_outputs, 3).
         along: axis that each output measures mostly, shape (n_outputs,).
         names: of the outputs and of the hit points.
     """
 
+    frequency: FloatArray
     outputs: FloatArray
     inputs: FloatArray
     axes: FloatArray
@@ -74,32 +83,37 @@ class _Trial:
     inputs: FloatArray
 
 
-def find_suspects(
-    measured: FloatArray, deviation: FloatArray, computed: Coordinates
-) -> tuple[Suspect, ...]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Evidence:
+    """Weighted modal constants, their weights, and the cost of distant pairs."""
+
+    wanted: FloatArray
+    weight: FloatArray
+    apart: FloatArray
+
+
+def find_suspects(measured: ModeSet, computed: ShapesAtPlaces) -> tuple[Suspect, ...]:
     """Find coordinates whose sign, label or axis explains the measurement better.
 
     Args:
-        measured: modal constants of paired modes [1/kg], shape (n_pairs, n_outputs,
-            n_inputs).
-        deviation: their standard deviations, same shape.
+        measured: modes with their modal constants.
         computed: shapes at the same coordinates.
 
     Returns:
         Suspects, the largest gain first; none where the labels as given fit.
     """
-    largest = np.abs(measured).max(axis=(1, 2), keepdims=True)
-    weight = 1.0 / np.hypot(deviation, _FLOOR * largest)
-    freedom = max(measured.size - measured.shape[0], 1)
+    evidence = _evidence(measured, computed)
+    count = measured.frequency.size
+    freedom = max(evidence.wanted.size - count, 1)
     found: list[Suspect] = []
     now = _Trial("", (), "", computed.outputs, computed.inputs)
-    chi2 = _chi2(measured, weight, now)
+    chi2 = _chi2(evidence, now)
     touched: set[str] = set()
     while len(found) < _MOST:
         trials = [one for one in _trials(computed, now) if not touched & set(one.names)]
         if not trials:
             break
-        values = np.array([_chi2(measured, weight, one) for one in trials])
+        values = np.array([_chi2(evidence, one) for one in trials])
         best = int(np.argmin(values))
         gain = freedom * np.log(max(chi2, 1e-300) / max(values[best], 1e-300))
         limit = chi2_limit(_FALSE / len(trials), 1)
@@ -107,7 +121,7 @@ def find_suspects(
             break
         close = freedom * np.log(np.maximum(values, 1e-300) / values[best]) < limit
         equal = [trials[k].text for k in np.flatnonzero(close) if k != best]
-        size = float(np.sum((measured * weight) ** 2))
+        size = float(np.sum(evidence.wanted**2))
         found.append(
             Suspect(
                 trials[best].text,
@@ -123,17 +137,33 @@ def find_suspects(
     return tuple(found)
 
 
-def _chi2(measured: FloatArray, weight: FloatArray, trial: _Trial) -> float:
-    """Return the weighted squares of what is left after a positive scale per mode."""
+def _evidence(measured: ModeSet, computed: ShapesAtPlaces) -> _Evidence:
+    constants = measured.constants
+    largest = np.abs(constants).max(axis=(1, 2), keepdims=True)
+    weight = 1.0 / np.hypot(measured.constants_sd, _FLOOR * largest)
+    apart = np.log(measured.frequency[:, None] / computed.frequency)
+    cost = np.where(np.abs(apart) < _FARTHEST, (apart / _FREQUENCY_SD) ** 2, np.inf)
+    return _Evidence(constants * weight, weight, cost)
+
+
+def _chi2(evidence: _Evidence, trial: _Trial) -> float:
+    """Return the weighted squares of what the best pairs leave.
+
+    Each pair has a positive scale; a measured mode without a partner is left whole.
+    """
     constants = trial.outputs[:, :, None] * trial.inputs[:, None, :]
-    wanted, own = measured * weight, constants * weight
-    scale = np.sum(wanted * own, axis=(1, 2))
-    scale = scale / np.maximum(np.sum(own**2, axis=(1, 2)), 1e-300)
-    left = wanted - np.maximum(scale, 0.0)[:, None, None] * own
-    return float(np.sum(left**2))
+    wanted, weight = evidence.wanted, evidence.weight
+    crossed = np.einsum("moi,moi,coi->mc", wanted, weight, constants)
+    size = np.einsum("moi,coi->mc", weight**2, constants**2)
+    whole = np.sum(wanted**2, axis=(1, 2))[:, None]
+    left = whole - np.maximum(crossed, 0.0) ** 2 / np.maximum(size, 1e-300)
+    cost = np.minimum(left + evidence.apart, whole)
+    rows, columns = linear_sum_assignment(cost)
+    missing = np.setdiff1d(np.arange(wanted.shape[0]), rows)
+    return float(cost[rows, columns].sum() + whole[missing].sum())
 
 
-def _trials(computed: Coordinates, now: _Trial) -> Iterator[_Trial]:
+def _trials(computed: ShapesAtPlaces, now: _Trial) -> Iterator[_Trial]:
     outputs, inputs = computed.names
     for at, name in enumerate(outputs):
         yield _Trial(

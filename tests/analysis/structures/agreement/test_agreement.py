@@ -15,7 +15,7 @@ from jointbench.analysis.structures.agreement.paired_modes import (
     unpaired,
 )
 from jointbench.analysis.structures.agreement.suspect_coordinates import (
-    Coordinates,
+    ShapesAtPlaces,
     find_suspects,
 )
 from jointbench.analysis.structures.matrices.structure import Structure
@@ -39,7 +39,7 @@ def places(
     reduced: ReducedModel,
     sensors: tuple[MountedSensor, ...],
     truth: JointValues,
-) -> Coordinates:
+) -> ShapesAtPlaces:
     """Shapes of six modes at five sensors, two of them struck."""
     state = modal_state(reduced, truth.stiffness)
     vector = state.shapes[:, state.rigid : state.rigid + 6]
@@ -48,57 +48,67 @@ def places(
     axes = (readout(plates, reduced, along) @ vector).T.reshape(6, -1, 3)
     names = tuple(one.name for one in sensors)
     lead = np.array([int(np.argmax(np.abs(one.direction))) for one in sensors])
-    return Coordinates(outputs, outputs[:, [0, 2]], axes, lead, (names, ("1", "2")))
+    frequency = np.sqrt(state.eigenvalue[state.rigid : state.rigid + 6]) / (2 * np.pi)
+    return ShapesAtPlaces(
+        frequency, outputs, outputs[:, [0, 2]], axes, lead, (names, ("1", "2"))
+    )
 
 
-def constants(places: Coordinates, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Modal constants as measured: each off by 5 %, with a scale of each mode."""
+def measured_modes(places: ShapesAtPlaces, seed: int) -> ModeSet:
+    """Modes as measured: constants off by 5 %, frequencies by 0.5 %."""
     rng = np.random.default_rng(seed)
     exact = places.outputs[:, :, None] * places.inputs[:, None, :]
     scale = rng.uniform(0.9, 1.1, (exact.shape[0], 1, 1))
     size = np.abs(exact).max(axis=(1, 2), keepdims=True)
     noisy = exact * scale + NOISE * size * rng.normal(size=exact.shape)
-    return noisy, np.broadcast_to(0.01 * size, exact.shape)
+    frequency = places.frequency * (1.0 + 0.005 * rng.normal(size=6))
+    damping = np.full(6, 0.01)
+    deviation = np.broadcast_to(0.01 * size, exact.shape).copy()
+    shapes = places.outputs.astype(complex)
+    return ModeSet(frequency, damping, damping, damping, shapes, noisy, deviation)
 
 
-def test_right_labels_are_not_suspected(places: Coordinates) -> None:
+def spoilt(modes: ModeSet, signs: np.ndarray) -> ModeSet:
+    """Return modes whose constants have other signs, shape of outputs and inputs."""
+    return replace(modes, constants=modes.constants * signs)
+
+
+def test_right_labels_are_not_suspected(places: ShapesAtPlaces) -> None:
     """None of forty draws with errors of 5 %."""
     for seed in range(40):
-        assert find_suspects(*constants(places, seed), places) == ()
+        assert find_suspects(measured_modes(places, seed), places) == ()
 
 
-def test_a_wrong_sign_is_named(places: Coordinates) -> None:
+def test_a_wrong_sign_is_named(places: ShapesAtPlaces) -> None:
     """Of an output, and of a hit point, in every draw."""
     for seed in range(5):
-        measured, deviation = constants(places, seed)
-        measured[:, 3] *= -1.0
-        found = find_suspects(measured, deviation, places)
+        modes = measured_modes(places, seed)
+        output, hit = np.ones((5, 2)), np.ones((5, 2))
+        output[3], hit[:, 1] = -1.0, -1.0
+        found = find_suspects(spoilt(modes, output), places)
         assert [one.text for one in found] == ["output a4 has the wrong sign"]
-        measured, deviation = constants(places, seed)
-        measured[:, :, 1] *= -1.0
-        found = find_suspects(measured, deviation, places)
+        found = find_suspects(spoilt(modes, hit), places)
         assert found[0].text == "hit 2 has the wrong sign"
 
 
-def test_exchanged_labels_and_a_wrong_axis_are_named(places: Coordinates) -> None:
+def test_exchanged_labels_and_a_wrong_axis_are_named(places: ShapesAtPlaces) -> None:
     """Two sensors on each other's channels; one glued along x in place of z."""
-    measured, deviation = constants(places, 1)
-    found = find_suspects(measured[:, [4, 1, 2, 3, 0]], deviation, places)
+    modes = measured_modes(places, 1)
+    exchanged = replace(modes, constants=modes.constants[:, [4, 1, 2, 3, 0]])
+    found = find_suspects(exchanged, places)
     assert found[0].text == "outputs a1 and a5 are exchanged"
     assert found[0].residual_after < 0.3 * found[0].residual_before
     turned = replace(places, outputs=places.outputs.copy())
     turned.outputs[:, 4] = places.axes[:, 4, 0]
-    measured, deviation = constants(turned, 2)
-    found = find_suspects(measured, deviation, places)
+    found = find_suspects(measured_modes(turned, 2), places)
     assert found[0].text == "output a5 measures along x"
 
 
-def test_two_faults_are_named_one_after_the_other(places: Coordinates) -> None:
+def test_two_faults_are_named_one_after_the_other(places: ShapesAtPlaces) -> None:
     """Two signs."""
-    measured, deviation = constants(places, 3)
-    measured[:, 1] *= -1.0
-    measured[:, 3] *= -1.0
-    found = find_suspects(measured, deviation, places)
+    signs = np.ones((5, 2))
+    signs[[1, 3]] = -1.0
+    found = find_suspects(spoilt(measured_modes(places, 3), signs), places)
     assert {one.names for one in found} == {("a2",), ("a4",)}
 
 
