@@ -38,14 +38,14 @@ thirteen modes each by springs at four points; [identify](joint-simulation.md) j
 meshed plates over four spots of 20 mm radius. The joint is fitted to the simulator's
 own natural frequencies from 100 to 1600 Hz, without noise, moduli and masses known.
 
-A mesh gives way around a spot; thirteen modes of a plate do not. That local compliance
+A mesh is compliant around a spot; thirteen modes of a plate are not. This compliance
 is in series with the joint: the fit has to make the spring stiffer for the same
 frequencies. It is the same compliance at every torque, it vanishes where the mesh is
 reduced to the simulator's modes, and computed from the mesh alone (mean displacement of
 a spot under an even traction, less the part of thirteen modes) it is
-**{normal:.2e} m/N normal and {tangential:.2e} m/N tangential a bolt**. It is a quarter
-of the compliance of the simulated tangential springs and a fiftieth of that of the normal
-ones; hence the tangential stiffness is far off and the normal one is not.
+**{normal:.2e} m/N normal and {tangential:.2e} m/N tangential a bolt**. It is a sixth to
+a third of the compliance of the simulated tangential springs and a fortieth of that of
+the normal ones; hence the tangential stiffness is far off and the normal one is not.
 
 The missing compliance [m/N] of a bolt is 1/truth less 1/fit; rms is of frequencies.
 
@@ -54,9 +54,9 @@ The missing compliance [m/N] of a bolt is 1/truth less 1/fit; rms is of frequenc
 """
 CONCLUSION = """
 So neither is wrong: the identified value is that of the interface alone, beside bodies
-that give way; the simulator's value holds the bodies' local compliance as well. In a
-measurement on real bodies, which do give way, the identified value is the one to take
-to another finite element model, and the one that a contact law predicts; a lumped
+with their local compliance; the simulator's value holds that compliance too. On real
+bodies, which have it, the identified value is the one to take to another finite element
+model, and the one that a contact law predicts; a lumped
 model needs the two in series. Rocking of a spot is not the reason (a fit with patches
 on thirteen modes is right), nor are the mass of the sensor, the moduli or the aim: with
 moduli and mass unknown, the fit gives 19 to 49 % as `identify` does on the hits.

@@ -26,7 +26,7 @@ _FALSE = 1e-3
 _FALLS = 0.6
 _MOST = 4
 # Relative frequency error of a model whose joints were identified; modes are paired
-# anew for each alternative, because a wrong sign also spoils the MAC ...
+# again for each alternative, because a wrong sign also spoils the MAC ...
 _FREQUENCY_SD = 0.03
 # ... but not beyond this distance in ln.
 _FARTHEST = 0.3
