@@ -30,6 +30,7 @@ from jointbench.station.commands.file_commands import (
 )
 from jointbench.station.commands.joint_commands import (
     agreement_command,
+    design_command,
     export_joint_command,
     gap_command,
     identify_command,
@@ -81,6 +82,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "compare": compare_command,
     },
     "Joints and machines": {
+        "design": design_command,
         "identify": identify_command,
         "agreement": agreement_command,
         "export-joint": export_joint_command,

@@ -36,6 +36,7 @@ from jointbench.station.files.toml_file import StrictTable
 from jointbench.station.joints.shape_table import PatchTable, ShapeTable
 from jointbench.station.joints.structure_contact import TheoryTable, joint_of
 from jointbench.station.joints.structure_tables import (
+    DesignTable,
     IdentifyTable,
     JointTable,
     MaterialTable,
@@ -55,6 +56,8 @@ class StructureModel(StrictTable):
     supports: tuple[SupportTable, ...] = ()
     sensors: dict[str, SensorTable] = Field(default_factory=dict)
     hits: dict[str, SensorTable] = Field(default_factory=dict)
+    reachable: dict[str, SensorTable] = Field(default_factory=dict)
+    design: DesignTable | None = None
     measured: MeasuredTable | None = None
     identify: IdentifyTable = IdentifyTable()
     contact: TheoryTable | None = None
