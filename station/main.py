@@ -29,6 +29,8 @@ from jointbench.station.commands.file_commands import (
     verify_command,
 )
 from jointbench.station.commands.joint_commands import (
+    agreement_command,
+    design_command,
     export_joint_command,
     gap_command,
     identify_command,
@@ -80,7 +82,9 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "compare": compare_command,
     },
     "Joints and machines": {
+        "design": design_command,
         "identify": identify_command,
+        "agreement": agreement_command,
         "export-joint": export_joint_command,
         "contact": contact_command,
         "pressure-map": pressure_map_command,

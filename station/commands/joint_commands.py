@@ -148,6 +148,120 @@ def export_joint_command(
     return 0 if good else EXIT_QUALITY
 
 
+def agreement_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL", help="Model (TOML): meshed bodies with [joints]."
+        ),
+    ],
+    identified: Annotated[
+        Path,
+        typer.Argument(
+            metavar="JSON", help="Identified joints: 'jointbench identify --json'."
+        ),
+    ],
+    sessions: Sessions = None,
+    band: Band = None,
+    cache: Cache = None,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Compare measured and computed modes and FRFs.
+
+    Modes are paired in place and direction: MAC, CoMAC, FRAC, differences of frequency
+    and damping with intervals, and points with a doubtful sign, label or axis. The
+    exit code is 5 if there is such a point.
+
+    Examples:
+        jointbench agreement plates.toml joint.json session.h5 --report agreement.html
+    """
+    from jointbench.station.agreement.run_agreement import (
+        AgreementOutputs,
+        run_agreement,
+    )
+
+    outputs = AgreementOutputs(report, json, cache)
+    good = run_agreement(model, identified, sessions or [], band=band, outputs=outputs)
+    return 0 if good else EXIT_QUALITY
+
+
+def design_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL",
+            help="Model (TOML): meshed bodies with [joints], [design], [reachable].",
+        ),
+    ],
+    values: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PATH",
+            help="Identified joints ('jointbench identify --json'); default the "
+            "expected values in [design].",
+        ),
+    ] = None,
+    state: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="State, where several were identified."),
+    ] = None,
+    next_: Annotated[
+        bool,
+        typer.Option(
+            "--next",
+            help="[sensors] and [hits] are measured: what would help most next.",
+        ),
+    ] = False,
+    mass: Annotated[
+        str | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="With --next: a mass that could be added, for example '200 g'.",
+        ),
+    ] = None,
+    deviation: Annotated[
+        str | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Wanted relative standard deviation, for example '1 %': hits needed.",
+        ),
+    ] = None,
+    plan: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="Plan of 'measure' to take sensors from."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="Plan of 'measure' to write (.toml)."),
+    ] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Choose hit points and sensors before the first hit.
+
+    From points that can be reached, those that determine the joints best, with the
+    intervals to expect; nuisances (gains, aim, moduli) are taken out.
+
+    Examples:
+        jointbench design plates.toml --plan bench.toml --out plan.toml
+        jointbench design plates.toml --next --mass '200 g' --deviation '1 %'
+    """
+    from jointbench.acquisition.basics.units import parse_value
+    from jointbench.station.design.design_output import run_design
+    from jointbench.station.design.run_design import DesignRequest
+
+    request = DesignRequest(
+        values,
+        state,
+        next_,
+        None if deviation is None else parse_value(deviation, "ratio"),
+        None if mass is None else parse_value(mass, "mass"),
+    )
+    run_design(model, request, template=plan, out=out, json_target=json)
+
+
 def gap_command(
     sources: GapSources,
     model: Model = None,

@@ -33,7 +33,7 @@ from jointbench.analysis.structures.reduction.full_modes import (
     solve_full,
 )
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.joint_files.state_values import (
+from jointbench.station.joints.state_values import (
     StateValues,
     read_identified,
     state_values,
@@ -105,7 +105,7 @@ def export_source(model: Path, identified: Path, state: str | None) -> ExportSou
     structure = structure_of(settings, model.parent)
     values = state_values(found, structure, settings.identify, state)
     if values.masses:
-        structure = structure_of(_with_masses(settings, values), model.parent)
+        structure = structure_of(settings.with_masses(values.masses), model.parent)
     if values.moduli:
         structure = scaled_structure(structure, values.moduli)
     return ExportSource(settings, structure, values)
@@ -234,11 +234,3 @@ def _points(source: ExportSource) -> tuple[tuple[int, float], ...]:
         mass = one.mass * source.values.masses.get(sensor, 1.0)
         found.append((node + int(structure.first_node[at]), mass))
     return tuple(found)
-
-
-def _with_masses(settings: StructureModel, values: StateValues) -> StructureModel:
-    sensors = {
-        name: one.model_copy(update={"mass": one.mass * values.masses.get(name, 1.0)})
-        for name, one in settings.sensors.items()
-    }
-    return settings.model_copy(update={"sensors": sensors})

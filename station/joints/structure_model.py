@@ -5,6 +5,7 @@
 bench (`bench_model`). Units are written beside every number.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from pydantic import Field, model_validator
@@ -35,6 +36,7 @@ from jointbench.station.files.toml_file import StrictTable
 from jointbench.station.joints.shape_table import PatchTable, ShapeTable
 from jointbench.station.joints.structure_contact import TheoryTable, joint_of
 from jointbench.station.joints.structure_tables import (
+    DesignTable,
     IdentifyTable,
     JointTable,
     MaterialTable,
@@ -54,6 +56,8 @@ class StructureModel(StrictTable):
     supports: tuple[SupportTable, ...] = ()
     sensors: dict[str, SensorTable] = Field(default_factory=dict)
     hits: dict[str, SensorTable] = Field(default_factory=dict)
+    reachable: dict[str, SensorTable] = Field(default_factory=dict)
+    design: DesignTable | None = None
     measured: MeasuredTable | None = None
     identify: IdentifyTable = IdentifyTable()
     contact: TheoryTable | None = None
@@ -74,6 +78,14 @@ class StructureModel(StrictTable):
     def parametric_joints(self) -> list[str]:
         """Names of the joints that are not glued."""
         return [name for name, one in self.joints.items() if not one.glued]
+
+    def with_masses(self, factors: Mapping[str, float]) -> "StructureModel":
+        """Return the model with the masses of sensors multiplied, by their names."""
+        sensors = {
+            name: one.model_copy(update={"mass": one.mass * factors.get(name, 1.0)})
+            for name, one in self.sensors.items()
+        }
+        return self.model_copy(update={"sensors": sensors})
 
 
 def structure_of(model: StructureModel, folder: Path) -> Structure:

@@ -128,22 +128,28 @@ def _evidence(
         plain = MeasuredModes(plain.natural_frequency, plain.frequency_sd)
         return StructureEvidence(label, plain, None, none, none)
     sensors = sensors_of(settings.sensors)
-    outputs = readout(structure, reduced, _named(frf.outputs, sensors, "sensors"))
+    outputs = readout(
+        structure, reduced, named_sensors(frf.outputs, sensors, "sensors")
+    )
     if settings.identify.data == "modes":
         return StructureEvidence(
             label, _measured(modes, settings.identify), None, outputs, none
         )
     hits = {**sensors, **sensors_of(settings.hits)}
-    inputs = readout(structure, reduced, _named(frf.inputs, hits, "hits"))
+    inputs = readout(structure, reduced, named_sensors(frf.inputs, hits, "hits"))
     low, high = chain.result.band
     picked = _thinned(frf, low, high, settings.identify.lines)
     return StructureEvidence(label, None, picked, outputs, inputs)
 
 
-def _named(
+def named_sensors(
     labels: Sequence[str], places: dict[str, MountedSensor], kind: str
 ) -> list[MountedSensor]:
-    """Return the places of channels ``"channel@point"`` or of hit points."""
+    """Return the places of channels ``"channel@point"`` or of hit points.
+
+    Raises:
+        BadData: one of them has none.
+    """
     require_named(labels, places, kind)
     return [places[label.partition("@")[0]] for label in labels]
 

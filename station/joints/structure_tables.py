@@ -125,3 +125,31 @@ class IdentifyTable(StrictTable):
     modulus_sd: dict[str, _Share] = Field(default_factory=dict)
     mass_sd: dict[str, _Share] = Field(default_factory=dict)
     priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)
+
+
+class DesignTable(StrictTable):
+    """What a test plan is designed for, before the first hit.
+
+    Stiffness and damping by direction are expected ones, where no identified values are
+    given; gain and force deviations are relative.
+    """
+
+    sensors: Annotated[int, Field(ge=1, le=100)] = 3
+    hits: Annotated[int, Field(ge=1, le=100)] = 5
+    repeats: Annotated[int, Field(ge=1, le=1000)] = 3
+    band: tuple[_Frequency, _Frequency]
+    peak: Annotated[float, with_unit("force"), Field(gt=0)] = 500.0
+    contact: Annotated[float, with_unit("time"), Field(gt=0)] = 3e-4
+    noise: Annotated[float, with_unit("acceleration"), Field(gt=0)] = 0.02
+    sample_rate: _Frequency = 25600.0
+    duration: Annotated[float, with_unit("time"), Field(gt=0)] = 1.0
+    gain_sd: _Trust = 0.02
+    force_sd: _Trust = 0.02
+    wanted: tuple[str, ...] = ()
+    criterion: Literal["D", "E"] = "D"
+    stiffness: dict[str, Annotated[float, with_unit("stiffness"), Field(gt=0)]] = Field(
+        default_factory=dict
+    )
+    damping: dict[str, Annotated[float, with_unit("damping"), Field(gt=0)]] = Field(
+        default_factory=dict
+    )

@@ -160,6 +160,7 @@ def structure_json(
             one.name: parameter_json(one) | _profile_json(result.profiles.get(one.name))
             for one in result.parameters
         },
+        "log_covariance": result.log_covariance.tolist(),
         "solutions": [
             {
                 "parameters": dict(one.parameters),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, FormatError, UsageError
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.analysis.structures.identification.sensor_masses import is_mass
@@ -30,7 +31,8 @@ class StateValues:
         moduli: factors by the name of the body.
         masses: factors by the name of the sensor.
         parameters: of the joints of this state, as identified or known.
-        predicted: elastic natural frequencies that ``identify`` wrote [Hz].
+        covariance: of ln stiffness, then ln damping of every joint and direction, shape
+            (2 n_parameters, 2 n_parameters); zero where it is not known.
     """
 
     label: str
@@ -38,6 +40,7 @@ class StateValues:
     moduli: Mapping[str, float]
     masses: Mapping[str, float]
     parameters: tuple[JointParameter, ...]
+    covariance: FloatArray
 
     def of_joint(self, name: str) -> tuple[JointParameter, ...]:
         """Return the parameters of one joint."""
@@ -48,7 +51,20 @@ class StateValues:
         )
 
 
-def read_identified(path: Path) -> dict[str, JointParameter]:
+@dataclass(frozen=True, slots=True, eq=False)
+class IdentifiedFile:
+    """What the JSON of ``identify`` holds of joints.
+
+    Attributes:
+        parameters: by name.
+        covariance: of their logarithms, in their order; None in a file without it.
+    """
+
+    parameters: Mapping[str, JointParameter]
+    covariance: FloatArray | None
+
+
+def read_identified(path: Path) -> IdentifiedFile:
     """Read the parameters of the JSON of ``identify``.
 
     Raises:
@@ -60,9 +76,10 @@ def read_identified(path: Path) -> dict[str, JointParameter]:
         raise FormatError(f"{path}: larger than {_MOST_BYTES} bytes")
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        return {
+        found = {
             name: _parameter(name, one) for name, one in content["parameters"].items()
         }
+        return IdentifiedFile(found, _covariance(content, len(found)))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise FormatError(
             f"{path}: no parameters as 'jointbench identify --json' writes them "
@@ -71,7 +88,7 @@ def read_identified(path: Path) -> dict[str, JointParameter]:
 
 
 def state_values(
-    found: Mapping[str, JointParameter],
+    file: IdentifiedFile,
     structure: Structure,
     table: IdentifyTable,
     label: str | None = None,
@@ -79,7 +96,7 @@ def state_values(
     """Return the values of one state.
 
     Args:
-        found: parameters by name.
+        file: parameters by name.
         structure: that they belong to.
         table: of the model, with the stiffnesses that were not sought.
         label: of the state; None where there is one only.
@@ -88,6 +105,7 @@ def state_values(
         BadData: the JSON belongs to another model.
         UsageError: there are several states, or none of that name.
     """
+    found = file.parameters
     label = _label(found, label)
     stiffness, damping = [], []
     parameters: list[JointParameter] = []
@@ -99,13 +117,48 @@ def state_values(
         stiffness.append(one.value)
         damping.append(0.0 if loss is None else loss.value)
         parameters += [one] if loss is None else [one, loss]
+    names = [
+        f"{one}_{kind}"
+        for kind in ("stiffness", "damping")
+        for one in structure.parameter_names
+    ]
     return StateValues(
         label,
         JointValues(np.array(stiffness), np.array(damping)),
         {n.rpartition(".")[0]: p.value for n, p in found.items() if is_modulus(n)},
         {n.rpartition(".")[0]: p.value for n, p in found.items() if is_mass(n)},
         tuple(parameters),
+        _placed_covariance(file, label, names),
     )
+
+
+def _placed_covariance(
+    file: IdentifiedFile, label: str, names: list[str]
+) -> FloatArray:
+    """Return the covariance in the order of `names`; zero for what is not there."""
+    whole = np.zeros((len(names), len(names)))
+    if file.covariance is None:
+        return whole
+    order = list(file.parameters)
+    keys = [f"{label}:{n}" if f"{label}:{n}" in order else n for n in names]
+    # What is not identifiable has no useful linear interval.
+    known = [
+        (at, order.index(key))
+        for at, key in enumerate(keys)
+        if key in order and file.parameters[key].identifiable
+    ]
+    place, source = [a for a, _ in known], [b for _, b in known]
+    whole[np.ix_(place, place)] = file.covariance[np.ix_(source, source)]
+    return whole
+
+
+def _covariance(content: Mapping[str, Any], count: int) -> FloatArray | None:
+    if "log_covariance" not in content:
+        return None
+    found = np.array(content["log_covariance"], float)
+    if found.shape != (count, count) or not np.isfinite(found).all():
+        raise ValueError(f"log_covariance has shape {found.shape}")
+    return found
 
 
 def _label(found: Mapping[str, JointParameter], label: str | None) -> str:
