@@ -183,6 +183,7 @@ def gap_command(
         jointbench gap session.h5 --model bench.toml --report gap.html
         jointbench gap hits.h5 --model sheet.json
         jointbench gap session.h5 --model bench.toml --surface a.csv --surface b.csv
+        jointbench gap surface.csv --report surface.html
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
     if surface:

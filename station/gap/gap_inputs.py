@@ -44,6 +44,8 @@ from jointbench.station.gap.session_hits import (
 )
 from jointbench.station.gap.structure_files import examine_structure, nominal_beside
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
+from jointbench.station.gap.surface_gap import examine_surface, surface_remarks
+from jointbench.station.gap.surface_gap_section import surface_gap_sections
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
@@ -125,10 +127,7 @@ def examine(
     if any(path.suffix.lower() == ".mat" for path in paths):
         return _examine_record(paths, wanted, progress)
     if not is_session_name(paths[0]):
-        raise UsageError(
-            f"'{paths[0]}' is no campaign, session (.h5) or record (.mat); bring hits "
-            "in with `jointbench import` first"
-        )
+        return _examine_surface(paths, wanted, progress)
     if _schema(paths[0]) == HIT_SCHEMA:
         return _examine_hits(paths, wanted, progress)
     if _schema(paths[0]) != SESSION_SCHEMA:
@@ -223,6 +222,27 @@ def _examine_joint(
     data, law = read_joint(paths[0])
     done = diagnose_contact(data, law, without=wanted.without, progress=progress)
     return Examined(data.name, done.found, sections=contact_sections(done))
+
+
+def _examine_surface(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine heights, with a self-affine surface as base."""
+    _refuse_curves(wanted)
+    if wanted.extended or wanted.model is not None or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' is no campaign, session (.h5) or record (.mat): as a "
+            "surface it takes no model, preload or effects. Bring hits in with "
+            "`jointbench import` first"
+        )
+    done = examine_surface(paths, without=wanted.without, progress=progress)
+    title = ", ".join(path.stem for path in paths)
+    return Examined(
+        title,
+        done.found,
+        remarks=surface_remarks(done),
+        sections=surface_gap_sections(done),
+    )
 
 
 def _examine_campaign(

@@ -10,8 +10,8 @@ GapSources = Annotated[
     list[str],
     typer.Argument(
         metavar="SOURCE",
-        help="Sessions or a campaign (.h5), record (.mat), model with data (.toml) "
-        "or URL of a simulator (sim:).",
+        help="Sessions or a campaign (.h5), record (.mat), model with data (.toml), "
+        "measured surface, or URL of a simulator (sim:).",
         show_default=False,
     ),
 ]
