@@ -121,7 +121,7 @@ def _struck(
                     level=level,
                     hit_dof=body,
                     preload=float(p),
-                    # The maker has no law of the preload of its own here.
+                    # No law of the preload of its own here: the joint has it.
                     preload_ratio=1.0,
                     order=len(found),
                     progress=0.0,

@@ -5,7 +5,7 @@
 
     python benchmarks/gap/chain_score.py --seed 700 --count 30 --out /tmp/chain.jsonl
 
-Appends one JSON line for each chain, goes on where it ended, and prints the counts.
+Appends one JSON line for each chain, continues where it ended, and prints the counts.
 """
 
 import argparse

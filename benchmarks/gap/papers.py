@@ -95,7 +95,7 @@ def glued_to_joint() -> list[str]:
         + ", ".join(f"{100 * (np.exp(r) - 1):+.0f} %" for r in left)
         + f"; chi2 {chi2:.0f} for 2 degrees of freedom at 1 % |",
         "| joint compliance, the paper's model | "
-        + ", ".join(f"{100 * (p / m - 1):+.1f} %" for p, m in zip(PAPER_JOINT, MEASURED, strict=True)) + " |",
+        + ", ".join(f"{100 * r:+.1f} %" for r in PAPER_JOINT / MEASURED - 1) + " |",
         "| joint compliance, substitute column with the printed K | "
         + ", ".join(f"{100 * (np.exp(r) - 1):+.1f} %" for r in sub) + " |",
     ]  # fmt: skip

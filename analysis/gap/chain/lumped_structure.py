@@ -279,7 +279,7 @@ def _joint(states: Sequence[FittedState], link: int, test: LinkTest) -> JointRea
         at = len(model.bodies) + link
         fit = state.best
         values.append(np.log(model.links[link].stiffness) + fit.base[at])
-        # A state that the effects do not fit says nothing of the joint.
+        # A state that the effects do not fit leaves the joint open.
         lost = corrected and state.after is None
         variance = CHAIN.free_stiffness_sd**2 if lost else fit.covariance[at, at]
         variances.append(float(variance))
