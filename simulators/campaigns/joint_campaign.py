@@ -99,12 +99,7 @@ def joint_campaign(
         nut_factor=float(0.2 * np.exp(0.1 * rng.standard_normal())),
         seed=seed,
     )
-    heights = np.stack(
-        [
-            random_face(FACE_POINTS, FACE_SPACING, _FACE_RMS, _LONGEST, 2 * seed + k)
-            for k in (0, 1)
-        ]
-    )
+    heights = ground_surfaces(seed)
     both = heights.sum(axis=0)[::_COARSER, ::_COARSER]
     pressures = np.geomspace(*_PRESSURES[:2], int(_PRESSURES[2]))
     layer = rough_layer(both, _COARSER * FACE_SPACING, design.modulus, pressures)
@@ -118,6 +113,20 @@ def joint_campaign(
     ]
     campaign = _hits(seed, rng, np.array(scattered), effects)
     return JointCampaign(design, heights, clean, campaign)
+
+
+def ground_surfaces(seed: int) -> FloatArray:
+    """Return the roughness of the lower and the upper surface [m], shape (2, n, n).
+
+    Args:
+        seed: of the campaign.
+    """
+    return np.stack(
+        [
+            random_face(FACE_POINTS, FACE_SPACING, _FACE_RMS, _LONGEST, 2 * seed + k)
+            for k in (0, 1)
+        ]
+    )
 
 
 def nominal_preload(torque: float) -> float:

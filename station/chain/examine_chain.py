@@ -99,7 +99,7 @@ def examine_chain(
     progress("reading hits")
     measured = read_states(sessions, model, table, wanted.preload)
     progress("fitting surfaces")
-    surface = read_surfaces_of_chain(heights, table, measured.states)
+    surface = read_surfaces_of_chain(heights, table, measured.states, progress)
     structure = read_lumped(
         measured.campaigns,
         link=measured.link,

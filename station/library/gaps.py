@@ -8,6 +8,11 @@ from typing import Any
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
 from jointbench.analysis.gap.response.threads import side_by_side
+from jointbench.station.chain.chain_json import chain_json
+from jointbench.station.chain.chain_report import chain_report
+from jointbench.station.chain.chain_tables import cause_rows, stiffness_rows
+from jointbench.station.chain.chain_words import chain_headline
+from jointbench.station.chain.examine_chain import ExaminedChain, examine_chain
 from jointbench.station.gap.gap_inputs import Examined, examine
 from jointbench.station.gap.gap_options import gap_request
 from jointbench.station.library.argument_checks import (
@@ -81,20 +86,70 @@ class GapVerdict(Shown):
         return ResultView(title, columns, tuple(rows), (*said, *self.examined.remarks))
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ChainVerdict(Shown):
+    """Verdict on the chain of surfaces, contact law, structure and hits.
+
+    Attributes:
+        examined: verdict, causes, stiffness, modes and responses.
+    """
+
+    examined: ExaminedChain
+
+    @property
+    def verdict(self) -> str:
+        """One of none, named, ambiguous, unknown."""
+        return self.examined.found.finding.value
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links at which the disagreement enters."""
+        return tuple(link.value for link in self.examined.found.links)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Effects that were found as ``name@site``."""
+        return self.examined.found.names
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the verdict as plain data, as ``gap --json`` writes it."""
+        return dict(chain_json(self.examined))
+
+    def write_report(self, path: str | Path) -> Path:
+        """Write the report of the chain as one HTML file."""
+        target = Path(path)
+        write_report(chain_report(self.examined), target)
+        return target
+
+    @property
+    def view(self) -> ResultView:
+        """Headline, the joint's stiffness in each state, and the factors of causes."""
+        columns = ("preload", "law alone", "predicted", "measured", "within 95 %")
+        said = [f"{n}: factor {f} ({i})" for n, f, i in cause_rows(self.examined)]
+        found = self.examined.found
+        title = f"verdict: {self.verdict}. {chain_headline(self.examined)}"
+        rows = tuple(stiffness_rows(self.examined))
+        lines = (found.reason, *said, *filter(None, [found.experiment]))
+        return ResultView(title, columns, rows, lines)
+
+
 def gap(
     source: Measurement | Files,
     *,
+    surfaces: Files = (),
     model: str | Path | None = None,
     preload: str | None = None,
     without: Sequence[str] = (),
     effects: Sequence[Path | str] = (),
     progress: Callable[[str], None] | None = None,
-) -> GapVerdict:
+) -> GapVerdict | ChainVerdict:
     """Find the effect that a model lacks to explain a measurement.
 
     Args:
         source: a recorded measurement, a campaign file, sessions, a MAT file, or the
             URL of a bench.
+        surfaces: measured contact surfaces of the joint, one or both; then the whole
+            chain is diagnosed, and the model needs a table [bolted_joint].
         model: bench model; None where the source brings its own.
         preload: on the joint with unit, where the session gives none.
         without: names of effects to leave out of the catalogue.
@@ -103,7 +158,8 @@ def gap(
         progress: receives one line per step.
 
     Returns:
-        Verdict, effects with intervals, and the gap before and after.
+        Verdict, effects with intervals, and the gap before and after; with surfaces
+        the link at which the chain disagrees.
 
     Raises:
         UsageError: a model is missing, or a name is in no catalogue.
@@ -125,5 +181,15 @@ def gap(
         effects=effects,
     )
     tell = progress or (lambda _line: None)
+    if surfaces:
+        heights = [surfaces] if isinstance(surfaces, str | Path) else list(surfaces)
+        with side_by_side():
+            chain = examine_chain(
+                [Path(one) for one in files],
+                [Path(one) for one in heights],
+                wanted,
+                progress=tell,
+            )
+        return ChainVerdict(chain)
     with side_by_side():
         return GapVerdict(examine([str(one) for one in files], wanted, progress=tell))

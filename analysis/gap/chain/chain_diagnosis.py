@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.chain.chain_records import ChainLink
+from jointbench.analysis.gap.chain.contact_link import CUT
 from jointbench.analysis.gap.chain.joint_over_preload import joint_data
 from jointbench.analysis.gap.chain.locate_link import Chain, Location, locate
 from jointbench.analysis.gap.chain.several_causes import (
@@ -88,8 +89,26 @@ def diagnose_chain(
     several = None
     if not outcome.base_acceptance.passed and not too_few(data):
         several = _causes(outcome, final, contact, progress)
+    location = _decided(location, chain, contact)
     found = ChainDiagnosis(chain, location, contact, several, Finding.NONE, (), "", "")
     return _concluded(found)
+
+
+def _decided(location: Location, chain: Chain, contact: ContactDiagnosis) -> Location:
+    """Let the contact bench decide between a cut-off and another effect.
+
+    A cut-off has one parameter, a free shape of ln k has several: their scores do not
+    compare as those of two effects do.
+    """
+    pair = {(ChainLink.SURFACE,), (ChainLink.CONTACT,)}
+    if {one.links for one in location.places} != pair or not chain.surface.test.passed:
+        return location
+    if contact.found.verdict is not Finding.NAMED:
+        return location
+    cut = any(e.name == CUT for e in contact.found.effects)
+    link = ChainLink.SURFACE if cut else ChainLink.CONTACT
+    kept = tuple(one for one in location.places if one.links == (link,))
+    return replace(location, places=kept)
 
 
 def _causes(

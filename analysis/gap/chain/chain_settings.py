@@ -39,6 +39,21 @@ class ChainBenchSettings:
         "prior sd of ln of the joint's stiffness and damping in each state",
         "wide: three decades either way are within 3 sd",
     )
+    surface_charge: float = numerical(
+        12.0,
+        "-",
+        "charge of a parameter of a surface in the score of a place",
+        "as in the engine",
+    )
+    spike_window: int = numerical(
+        5, "points", "width of the median that replaces spikes of the heights"
+    )
+    spike_limit: float = numerical(
+        6.0,
+        "sd",
+        "deviation from that median above which a height is a spike",
+        "normal heights: one in 5e8",
+    )
     free_factor_sd: float = numerical(
         10.0,
         "-",

@@ -250,6 +250,8 @@ def _with_effects(
     early = fit_coarse_to_fine(
         make_problem(own, fit.candidates), start, BASE_RESOLUTIONS
     )
+    if not np.isfinite(early.residual).all():
+        return state
     # Scatter and noise at a fit that lacks the effect hide what the effect explains.
     refined = own.refine(early.base, early.terms)
     after = minimise(make_problem(refined, fit.candidates), early.x)
@@ -271,10 +273,14 @@ def _coordinates(
 def _joint(states: Sequence[FittedState], link: int, test: LinkTest) -> JointReading:
     """Return ln k of the joint in each state, with its variance."""
     values, variances = [], []
+    corrected = any(state.after is not None for state in states)
     for state in states:
         model = state.bench.campaign.model
         at = len(model.bodies) + link
         fit = state.best
         values.append(np.log(model.links[link].stiffness) + fit.base[at])
-        variances.append(float(fit.covariance[at, at]))
+        # A state that the effects do not fit leaves the joint open.
+        lost = corrected and state.after is None
+        variance = CHAIN.free_stiffness_sd**2 if lost else fit.covariance[at, at]
+        variances.append(float(variance))
     return JointReading(np.array(values), np.diag(variances), test)

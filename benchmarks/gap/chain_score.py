@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Count how often the chain finds the right link and the right name.
+
+::
+
+    python benchmarks/gap/chain_score.py --seed 700 --count 30 --out /tmp/chain.jsonl
+
+Appends one JSON line for each chain, continues where it ended, and prints the counts.
+"""
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+from chain_cases import CONTACT, LUMPED, make_case
+
+from jointbench.analysis.gap.chain.chain_diagnosis import diagnose_chain
+from jointbench.analysis.gap.chain.locate_link import Chain
+from jointbench.analysis.gap.chain.lumped_structure import read_lumped
+
+
+def hidden_in(seed: int) -> tuple[str, str]:
+    """Return link and effect of a seed: contact, structure, none, in turn."""
+    turn, number = seed % 5, seed // 5
+    if turn == 4:
+        return "", ""
+    if turn % 2 == 0:
+        return "contact", CONTACT[(2 * number + turn // 2) % len(CONTACT)]
+    return "structure", LUMPED[(2 * number + turn // 2) % len(LUMPED)]
+
+
+def judged(seed: int) -> dict[str, object]:
+    """Make one chain, diagnose it, and return truth and answer."""
+    link, effect = hidden_in(seed)
+    case = make_case(seed, link, effect)
+    start = time.process_time()
+    structure = read_lumped(case.campaigns, link=1)
+    found = diagnose_chain(Chain(case.surface, structure.reading, case.states))
+    sets = []
+    if found.several is not None:
+        sets = [
+            [c.name for c in found.several.causes],
+            *map(list, found.several.rivals),
+        ]
+    return {
+        "seed": seed,
+        "link": link,
+        "effect": effect,
+        "finding": found.finding.value,
+        "places": [[x.value for x in p.links] for p in found.location.places],
+        "names": list(found.names),
+        "sets": sets,
+        "without": [t.passed for t in found.location.hypotheses[0].tests],
+        "states": len(case.campaigns),
+        "cpu_s": time.process_time() - start,
+    }
+
+
+def outcome(row: dict) -> tuple[str, str]:
+    """Return how link and name of a chain are judged: right, ambiguous, open, wrong."""
+    wanted = [row["link"]] if row["link"] else []
+    places = row["places"]
+    if not places:
+        return "open", "open"
+    link = "right" if places[0] == wanted and len(places) == 1 else "wrong"
+    if link == "wrong" and wanted in places:
+        link = "ambiguous"
+    if link == "wrong" and not places[0]:
+        link = "open"
+    if link != "right" or not wanted:
+        return link, link
+    names = {name.partition("@")[0] for name in row["names"]}
+    if row["finding"] == "named":
+        return link, "right" if names == {row["effect"]} else "wrong"
+    if row["finding"] == "ambiguous":
+        sets = row["sets"] if row["link"] == "contact" else [[n] for n in names]
+        held = any(row["effect"] in one for one in sets)
+        return link, "ambiguous" if held else "wrong"
+    return link, "open"
+
+
+def main() -> None:
+    """Diagnose the chains that are missing, and print the counts."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--count", type=int, default=10)
+    parser.add_argument("--out", type=Path, required=True)
+    given = parser.parse_args()
+    done = []
+    if given.out.exists():
+        done = [json.loads(x) for x in given.out.read_text().splitlines()]
+    known = {row["seed"] for row in done}
+    for seed in range(given.seed, given.seed + given.count):
+        if seed not in known:
+            done.append(judged(seed))
+            with given.out.open("a") as file:
+                file.write(json.dumps(done[-1]) + "\n")
+    counts: dict[str, dict[str, int]] = {}
+    for row in done:
+        link, name = outcome(row)
+        own = counts.setdefault(row["link"] or "none", {})
+        for key in ("n", f"link {link}", f"name {name}"):
+            own[key] = own.get(key, 0) + 1
+    print(json.dumps(counts, indent=1))
+
+
+if __name__ == "__main__":
+    main()
