@@ -5,8 +5,8 @@ The same calls are used for a driver on this computer and for a remote device se
 real or simulated; only the channel differs.
 """
 
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import grpc
@@ -55,9 +55,12 @@ _CONNECTION = 60.0  # [s] for the first answer of a server on a busy computer
 _OPTIONS = (
     ("grpc.max_receive_message_length", -1),
     ("grpc.max_send_message_length", -1),
+    # A server on a busy computer answers late; its buffer holds 20 s meanwhile.
     ("grpc.keepalive_time_ms", 10_000),
-    ("grpc.keepalive_timeout_ms", 5_000),
-    ("grpc.min_reconnect_backoff_ms", 100),
+    ("grpc.keepalive_timeout_ms", 20_000),
+    # In spite of its name the time in which a connection must be made, greetings of the
+    # server included; attempts that are refused are repeated after the other two.
+    ("grpc.min_reconnect_backoff_ms", 20_000),
     ("grpc.initial_reconnect_backoff_ms", 100),
     ("grpc.max_reconnect_backoff_ms", 1_000),
 )
@@ -326,12 +329,34 @@ class AnalogTask:
             count: samples to read.
             timeout: [s].
         """
+        with self._relative(ReadRelativeTo.FIRST_SAMPLE, sample):
+            return self.read(count, timeout=timeout)
+
+    def read_back(
+        self, back: int, count: int, *, timeout: float
+    ) -> tuple[int, FloatArray]:
+        """Read from a sample counted back from the newest, and continue from there.
+
+        Args:
+            back: number of the newest samples before which nothing is read.
+            count: samples to read.
+            timeout: [s].
+
+        Returns:
+            Index of the first sample read, and the samples, shape (n_channels, count).
+        """
+        with self._relative(ReadRelativeTo.MOST_RECENT_SAMPLE, -back):
+            samples = self.read(count, timeout=timeout)
+            return self.position() - count, samples
+
+    @contextmanager
+    def _relative(self, origin: ReadRelativeTo, offset: int) -> Iterator[None]:
+        """Read from another place; what follows continues from there."""
         stream = self._task.in_stream
         with named_errors(self._address):
-            stream.relative_to = ReadRelativeTo.FIRST_SAMPLE
-            stream.offset = sample
+            stream.relative_to, stream.offset = origin, offset
         try:
-            return self.read(count, timeout=timeout)
+            yield
         finally:
             with named_errors(self._address):
                 stream.relative_to = ReadRelativeTo.CURRENT_READ_POSITION

@@ -56,20 +56,25 @@ def _session_problems(session: Session) -> list[str]:
                     f"{recording.name}: hit {number} lies outside its {count} samples"
                 )
     stored = sum(recording.samples.shape[1] for recording in session.recordings)
+    gaps = [dict(s.detail) for s in session.provenance if s.name == "gap"]
+    missing = sum(int(gap.get("samples", 0)) for gap in gaps)
     for step in session.provenance:
-        found += _step_problems(step, stored)
+        found += _step_problems(step, stored, missing)
     return found
 
 
-def _step_problems(step: Step, stored: int) -> list[str]:
+def _step_problems(step: Step, stored: int, missing: int) -> list[str]:
     detail = dict(step.detail)
     if step.name == "recovered":
         return [f"recovered after a crash, {detail['damaged_blocks']} damaged blocks"]
     if step.name != "continuity":
         return []
     found = []
-    if detail.get("lost"):
-        found.append(f"{detail['lost']} samples per channel were lost at the device")
+    lost = detail.get("lost", 0)
+    if lost:
+        found.append(f"{lost} samples per channel were lost at the device")
+    if lost != missing:
+        found.append(f"the gaps state {missing} missing samples, the device {lost}")
     if detail.get("stored_samples") != stored:
         found.append(f"{stored} samples are there, {detail.get('stored_samples')} were")
     return found

@@ -219,7 +219,11 @@ def _record(
             session.run()
         except KeyboardInterrupt:
             record.interrupted = True
-        recorder.stop(interrupted=record.interrupted)
+        try:
+            recorder.stop(interrupted=record.interrupted)
+        finally:
+            # The session may have ended before it was told of the last ones.
+            record.gaps = recorder.gaps
 
 
 @contextmanager
@@ -275,7 +279,7 @@ def _show(measured: Measured, screen: Console) -> None:
         ("hits", ", ".join(f"{n} {word}" for word, n in counts.items()) or "none"),
         ("conditions", f"{measured.record.done} of {measured.planned}"),
         ("samples per channel", f"{measured.counters.delivered}"),
-        ("lost samples", f"{measured.counters.lost}"),
+        ("lost samples", _lost(measured)),
         (
             "interruptions",
             f"{sum(g.kind in ('back', 'rearmed') for g in measured.record.gaps)}",
@@ -286,6 +290,13 @@ def _show(measured: Measured, screen: Console) -> None:
         word = "good" if check.passed else "LOOK AT IT"
         screen.print(f"check {check.name}: {word}, {check.words}", soft_wrap=True)
     screen.print(f"\nnext: jointbench modal {measured.path}")
+
+
+def _lost(measured: Measured) -> str:
+    """Return the lost samples, and the gaps that they are in."""
+    counted, gaps = measured.counters.lost, measured.record.gaps
+    holes = sum(gap.samples > 0 for gap in gaps)
+    return f"{counted}" if not counted else f"{counted}, in {holes} gaps"
 
 
 def _counts(hits: list[Hit]) -> dict[str, int]:
@@ -318,6 +329,8 @@ def _summary(measured: Measured) -> dict[str, object]:
         "gaps": [
             {
                 "kind": g.kind,
+                "segment": g.segment,
+                "first_sample": g.first,
                 "samples": g.samples,
                 "seconds": g.seconds,
                 "words": g.words,
