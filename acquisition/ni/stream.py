@@ -37,7 +37,7 @@ __all__ = [
 
 _RETRY = 0.2  # [s] between attempts to reconnect
 _GRACE = 5.0  # [s] extra time for samples to arrive
-_MOST_VALUES = 2**21  # of all channels in one read: 16 MB
+_MOST_VALUES = 2**19  # of all channels in one read: 4 MB
 
 
 @dataclass(slots=True)
