@@ -1,7 +1,7 @@
 """What the operator says while a session runs, and what interrupts it."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,14 +13,24 @@ from jointbench.acquisition.session_file.store import read_session
 from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates_bench import PlatesBench
+from jointbench.station.bench_view.text_screen import TextScreen
 from jointbench.station.commands.verify_command import run_verify
 from jointbench.station.measure.bench_session import Measured, measure
 from jointbench.station.measure.chassis import OpenChassis, OperatorOfSimulation
-from jointbench.station.measure.observer import Command, HitNews
 from jointbench.station.measure.observer import Operator as Striker
 from jointbench.station.measure.plan import Condition, read_plan
-from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.screen.terminal import console
+from jointbench.station.session_events.command_codec import Command
+from jointbench.station.session_events.event_codec import Stamped
+from jointbench.station.session_events.flow_commands import QuitSession
+from jointbench.station.session_events.hit_commands import (
+    AcceptHit,
+    NextPoint,
+    RejectHit,
+    RepeatPoint,
+    UndoVerdict,
+)
+from jointbench.station.session_events.view_events import HitAveraged
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "plates.toml"
 HITS = """
@@ -46,10 +56,14 @@ class Operator(TextScreen):
         """Give the commands that come before the first hit."""
         self._waiting += self.after.pop(0, ())
 
-    def hit(self, news: HitNews) -> None:
+    def follow(self, events: Sequence[Stamped]) -> None:
         """Think of what to say."""
-        self._waiting += self.after.pop(news.number, ())
-        self.on_hit(news.number)
+        TextScreen.follow(self, events)
+        for stamped in events:
+            if isinstance(stamped.event, HitAveraged):
+                number = stamped.event.hit + 1
+                self._waiting += self.after.pop(number, ())
+                self.on_hit(number)
 
     def command(self) -> Command | None:
         """Say it, one thing a block."""
@@ -111,7 +125,7 @@ def points(folder: Path, verdict: Verdict = Verdict.OK) -> list[str]:
 
 def test_a_hit_rejected_by_the_operator_is_made_up_for(tmp_path: Path) -> None:
     """It stays in the file, with the operator and the earlier verdict."""
-    measured, _ = session(tmp_path, {1: (Command.REJECT,)})
+    measured, _ = session(tmp_path, {1: (RejectHit(),)})
     hits = stored(tmp_path)
     assert measured.whole
     assert hits[0].verdict is Verdict.OPERATOR
@@ -122,7 +136,7 @@ def test_a_hit_rejected_by_the_operator_is_made_up_for(tmp_path: Path) -> None:
 def test_a_bad_hit_accepted_by_the_operator_counts(tmp_path: Path) -> None:
     """A double hit, kept: no hit more than the plan wants."""
     measured, _ = session(
-        tmp_path, {1: (Command.ACCEPT,)}, fates=(Fate.DOUBLE, *[Fate.GOOD] * 9)
+        tmp_path, {1: (AcceptHit(),)}, fates=(Fate.DOUBLE, *[Fate.GOOD] * 9)
     )
     hits = stored(tmp_path)
     assert measured.whole
@@ -132,7 +146,7 @@ def test_a_bad_hit_accepted_by_the_operator_counts(tmp_path: Path) -> None:
 
 def test_undo_takes_the_last_word_back(tmp_path: Path) -> None:
     """Rejected and undone: the hit has its own verdict again, word for word."""
-    measured, _ = session(tmp_path, {1: (Command.REJECT, Command.UNDO)})
+    measured, _ = session(tmp_path, {1: (RejectHit(), UndoVerdict())})
     assert measured.whole
     assert len(stored(tmp_path)) == 4
     assert stored(tmp_path)[0].reason.startswith("single clean pulse")
@@ -140,20 +154,20 @@ def test_undo_takes_the_last_word_back(tmp_path: Path) -> None:
 
 def test_undo_without_a_word_takes_the_last_hit_out(tmp_path: Path) -> None:
     """A wrong key without an earlier command."""
-    session(tmp_path, {1: (Command.UNDO,)})
+    session(tmp_path, {1: (UndoVerdict(),)})
     assert stored(tmp_path)[0].reason.startswith("taken back by the operator")
 
 
 def test_rejecting_the_hit_that_ended_a_point_goes_back_to_it(tmp_path: Path) -> None:
     """Hit 2 ends point 1; rejected, point 1 is struck once more before point 2."""
-    measured, _ = session(tmp_path, {2: (Command.REJECT,)})
+    measured, _ = session(tmp_path, {2: (RejectHit(),)})
     assert measured.whole
     assert [hit.point for hit in stored(tmp_path)] == ["1", "1", "1", "2", "2"]
 
 
 def test_repeat_sets_the_hits_of_the_point_aside(tmp_path: Path) -> None:
     """After the first hit at point 2 that point starts again; point 1 stays."""
-    measured, _ = session(tmp_path, {3: (Command.REPEAT,)})
+    measured, _ = session(tmp_path, {3: (RepeatPoint(),)})
     assert measured.whole
     assert points(tmp_path) == ["1", "1", "2", "2"]
     assert points(tmp_path, Verdict.OPERATOR) == ["2"]
@@ -161,7 +175,7 @@ def test_repeat_sets_the_hits_of_the_point_aside(tmp_path: Path) -> None:
 
 def test_repeat_before_the_first_hit_repeats_the_point_before(tmp_path: Path) -> None:
     """Point 1 is just done; both its hits are set aside and it is struck again."""
-    measured, _ = session(tmp_path, {2: (Command.REPEAT,)})
+    measured, _ = session(tmp_path, {2: (RepeatPoint(),)})
     assert measured.whole
     assert points(tmp_path, Verdict.OPERATOR) == ["1", "1"]
     assert points(tmp_path) == ["1", "1", "2", "2"]
@@ -169,7 +183,7 @@ def test_repeat_before_the_first_hit_repeats_the_point_before(tmp_path: Path) ->
 
 def test_next_leaves_a_point_that_is_not_done_and_says_so(tmp_path: Path) -> None:
     """One hit at point 1, two at point 2; the session is not whole."""
-    measured, _ = session(tmp_path, {1: (Command.NEXT,)})
+    measured, _ = session(tmp_path, {1: (NextPoint(),)})
     assert measured.record.incomplete == ["20 Nm, point 1, 150 N"]
     assert not measured.whole
     assert points(tmp_path) == ["1", "2", "2"]
@@ -177,7 +191,7 @@ def test_next_leaves_a_point_that_is_not_done_and_says_so(tmp_path: Path) -> Non
 
 def test_quit_ends_with_a_valid_file(tmp_path: Path) -> None:
     """What was recorded until then is whole, and says that it was interrupted."""
-    measured, _ = session(tmp_path, {2: (Command.QUIT,)})
+    measured, _ = session(tmp_path, {2: (QuitSession(confirmed=True),)})
     ends = [dict(s.detail) for s in read_session(tmp_path / "s.h5").provenance]
     assert measured.record.interrupted
     assert run_verify(tmp_path / "s.h5", json_target=None)
@@ -201,8 +215,8 @@ def test_ctrl_c_at_a_hit_ends_with_a_valid_file(tmp_path: Path, number: int) -> 
 
 def test_a_word_before_the_first_hit_says_that_there_is_none(tmp_path: Path) -> None:
     """And nothing else comes of it."""
-    measured, operator = session(tmp_path, {0: (Command.ACCEPT,)})
-    assert "accept: there is no hit yet" in operator.heard
+    measured, operator = session(tmp_path, {0: (AcceptHit(),)})
+    assert "there is no hit yet" in operator.heard
     assert measured.whole
 
 
