@@ -22,8 +22,8 @@ from jointbench.station.session_events.hit_commands import (
 from jointbench.station.session_events.session_state import SessionState
 
 KEYS = (
-    "a accept  r reject  u undo  h reject by number  p repeat point  n next point",
-    "g go to point  t note  space pause  w warnings seen  c channel  : command  q quit",
+    "a accept  r reject  u undo  h reject number  p repeat point  n next  g go to",
+    "t note  space pause  w warnings seen  c C channel  : command  q quit",
 )
 _SINGLE: dict[str, Callable[[], Command]] = {
     "a": AcceptHit,

@@ -96,6 +96,7 @@ def _above(state: SessionState, around: Surroundings, look: Look) -> Iterator[Te
 def _below(state: SessionState, look: Look) -> Iterator[Text]:
     yield from message_lines(state, width=look.width)
     if look.prompt:
+        yield from (Text() for _ in look.keys[1:])
         yield Text(look.prompt + "▏", style="bold black on yellow")
     else:
         yield from (Text(line, style="italic") for line in look.keys)

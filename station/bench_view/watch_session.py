@@ -27,7 +27,7 @@ from jointbench.station.session_events.session_state import SessionState, state_
 
 _EVERY = 0.5  # [s] between looks at the file
 _KEYS_EVERY = 0.1  # [s] between looks at the keyboard
-_ONLY_WATCHING = ("c channel  q leaves; the session goes on",)
+_ONLY_WATCHING = ("c channel  q leaves; the session continues",)
 
 
 def run_watch(

@@ -37,8 +37,8 @@ _SILENCE = 1.0  # [s] after which a tester does not answer; it takes millisecond
 _RETRY = 0.2  # [s] between attempts to open a line that broke
 
 
-class Wish(Enum):
-    """What the operator wants of the bolt at hand."""
+class BoltChoice(Enum):
+    """What the operator wants of the bolt that is tightened."""
 
     TAKE = "take"
     BACK = "back"
@@ -134,9 +134,9 @@ class BoltWatch:
             number = len(found) + 1
             desk.write(BoltAsked(number, self.bolts, target))
             answer = self._one(target, (number, tester), desk, record)
-            if answer is Wish.QUIT:
+            if answer is BoltChoice.QUIT:
                 return None
-            if answer is Wish.BACK:
+            if answer is BoltChoice.BACK:
                 found, tries = found[:-1], 0
                 continue
             assert isinstance(answer, Reading)
@@ -160,7 +160,7 @@ class BoltWatch:
 
     def _one(
         self, target: float, at: "tuple[int, Tester]", desk: SessionDesk, record: Record
-    ) -> Reading | Wish:
+    ) -> Reading | BoltChoice:
         """Return the torque of one bolt, or what the operator wants instead."""
         number, tester = at
         hold, until = PeakHold(target), self.now() + self.wait
@@ -170,13 +170,13 @@ class BoltWatch:
             if done is not None:
                 return done
             self.sleep(_RETRY if reading is None else self.table.poll)
-            wish = _wish(desk, begun=hold.top is not None)
-            if wish is Wish.TAKE and hold.top is not None:
+            choice = _bolt_choice(desk, begun=hold.top is not None)
+            if choice is BoltChoice.TAKE and hold.top is not None:
                 return hold.top
-            if wish is Wish.QUIT or record.interrupted:
-                return Wish.QUIT
-            if wish is Wish.BACK:
-                return wish
+            if choice is BoltChoice.QUIT or record.interrupted:
+                return BoltChoice.QUIT
+            if choice is BoltChoice.BACK:
+                return choice
         trouble = f": {tester.trouble}" if tester.trouble else ""
         raise InstrumentError(
             f"bolt {number} was not tightened within {self.wait:g} s{trouble}; what "
@@ -248,24 +248,24 @@ def _believable(reading: Reading, most: float) -> Reading:
     return reading
 
 
-def _wish(desk: SessionDesk, *, begun: bool) -> Wish | None:
+def _bolt_choice(desk: SessionDesk, *, begun: bool) -> BoltChoice | None:
     """Return what the operator wants of the bolt, and answer the command."""
     ticket = desk.next_command()
-    wish: Wish | None = None
+    choice: BoltChoice | None = None
     match None if ticket is None else ticket.command:
         case None:
             return None
         case AcceptHit() if begun:
-            wish, words = Wish.TAKE, "the reading is taken as it is"
+            choice, words = BoltChoice.TAKE, "the reading is taken as it is"
         case UndoVerdict():
-            wish, words = Wish.BACK, "back to the bolt before"
+            choice, words = BoltChoice.BACK, "back to the bolt before"
         case QuitSession(confirmed=True):
-            wish, words = Wish.QUIT, "the session ends"
+            choice, words = BoltChoice.QUIT, "the session ends"
         case _:
             words = "bolts are tightened now; accept, undo or quit yes"
     assert ticket is not None
-    desk.answer(ticket, words, done=wish is not None)
-    return wish
+    desk.answer(ticket, words, done=choice is not None)
+    return choice
 
 
 def _bolt_read(reading: Reading, number: int, target: float, *, kept: bool) -> BoltRead:

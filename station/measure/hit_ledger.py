@@ -55,7 +55,7 @@ class HitLedger:
     @property
     def last(self) -> Entered | None:
         """The hit struck last, trial hits apart; None if its samples are gone."""
-        return self._at_hand(self.struck_last)
+        return self._in_memory(self.struck_last)
 
     @property
     def struck_last(self) -> int:
@@ -112,14 +112,14 @@ class HitLedger:
         return len(own) - len(self.good(condition))
 
     def any(self, condition: int) -> bool:
-        """Return whether a condition has hits at hand, accepted or rejected."""
+        """Return whether a condition has hits in memory, accepted or rejected."""
         return any(e.condition == condition for e in self._entered)
 
     def judge(self, index: int, *, accept: bool) -> None:
         """Accept or reject a hit, whenever it was struck."""
         words = _ACCEPTED if accept else _REJECTED
         hit = _judged(self._record.hits[index], words, accept=accept)
-        entered = self._at_hand(index)
+        entered = self._in_memory(index)
         if entered is None:
             self._log(index, hit)
             return
@@ -169,7 +169,7 @@ class HitLedger:
         own = [e for e in self._entered if e.condition == condition]
         return [e for e in own if e.hit.verdict is Verdict.OK]
 
-    def _at_hand(self, index: int) -> Entered | None:
+    def _in_memory(self, index: int) -> Entered | None:
         return next((e for e in self._entered if e.index == index), None)
 
     def _read_back(self, hit: Hit) -> CutHit:

@@ -184,7 +184,7 @@ class Points:
         return f"{self._route.condition.name} is next"
 
     def restart(self) -> None:
-        """Begin a recording anew, after a pause or at another point."""
+        """Begin a recording again, after a pause or at another point."""
         self._trigger.break_off()
         if not self._route.over:
             self.begin()
@@ -201,7 +201,7 @@ class Points:
         return condition
 
     def _return_to(self, condition: int) -> None:
-        """Show the last hit anew; where its point was left, go back to it."""
+        """Show the last hit again; where its point was left, go back to it."""
         if condition != self._route.condition.number:
             self._route.go_to(condition)
             self.begin()
