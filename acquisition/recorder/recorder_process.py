@@ -14,7 +14,11 @@ from contextlib import contextmanager, suppress
 from multiprocessing.context import BaseContext
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.ni.stream_records import (
     Block,
@@ -198,6 +202,28 @@ class RecorderProcess:
         """
         dated = {**entry, "stored": self.samples, "time": round(time.time(), 3)}
         self._send(Log(dated))
+
+    def new_entries(self) -> tuple[dict[str, Any], ...]:
+        """Return the entries of the log that reached the file since the last call.
+
+        Raises:
+            InstrumentError: the disk refuses.
+        """
+        return () if self._blocks is None else self._blocks.entries()
+
+    def read_back(self, start: int, stop: int) -> FloatArray:
+        """Return stored samples again, shape (n_channels, stop - start).
+
+        Args:
+            start: index of the first of them among those stored.
+            stop: index one past the last one.
+
+        Raises:
+            InstrumentError: the disk refuses.
+        """
+        assert self._blocks is not None, "begin() comes first"
+        parts = self._blocks.read(LiveSpan(0, start, start, stop - start))
+        return np.hstack([part.samples for part in parts])
 
     def pause(self) -> None:
         """Stop the stream on purpose; samples that were not passed on are skipped."""

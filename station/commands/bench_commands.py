@@ -111,7 +111,7 @@ def watch_command(
         jointbench watch session.h5
         jointbench watch session.h5 --once --json -
     """
-    from jointbench.station.measure.watch_session import run_watch
+    from jointbench.station.bench_view.watch_session import run_watch
 
     run_watch(session, once=once, json_target=json)
 

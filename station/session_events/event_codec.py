@@ -27,6 +27,18 @@ from jointbench.station.session_events.hit_events import (
     SettingProposed,
     VerdictChanged,
 )
+from jointbench.station.session_events.operator_events import (
+    CommandAnswered,
+    ConditionReopened,
+    NoteAdded,
+    PauseChanged,
+    WarningsSeen,
+)
+from jointbench.station.session_events.view_events import (
+    BoltAsked,
+    HitAveraged,
+    SessionBegun,
+)
 
 Event = (
     HitJudged
@@ -42,13 +54,22 @@ Event = (
     | CableChanged
     | SamplesMissing
     | SessionEnded
+    | SessionBegun
+    | HitAveraged
+    | BoltAsked
+    | CommandAnswered
+    | NoteAdded
+    | PauseChanged
+    | WarningsSeen
+    | ConditionReopened
 )
 _KINDS: Mapping[str, type[Event]] = {
     kind.kind: kind
     for kind in (
         *(HitJudged, VerdictChanged, SettingProposed, CheckDone, BoltRead),
         *(RunBegun, Asked, ConditionDone, Said, Warned, CableChanged),
-        *(SamplesMissing, SessionEnded),
+        *(SamplesMissing, SessionEnded, SessionBegun, HitAveraged, CommandAnswered),
+        *(NoteAdded, PauseChanged, WarningsSeen, ConditionReopened, BoltAsked),
     )
 }
 
