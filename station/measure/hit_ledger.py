@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.records.recordings import Hit, Verdict
-from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.measure.running_average import Accepted, Spoiler
 from jointbench.station.measure.session_desk import SessionDesk
 from jointbench.station.measure.session_log import hit_judged
 from jointbench.station.measure.session_record import Record
+from jointbench.station.measure.stored_cut import StoredCut
 
 _ACCEPTED = "accepted by the operator"
 _REJECTED = "rejected by the operator"
@@ -28,20 +28,20 @@ class Entered:
     Attributes:
         index: among all hits of the session, from 0.
         condition: number of the condition that it was struck for.
-        cut: its samples.
+        cut: its samples, in the file.
         hit: with its latest verdict.
     """
 
     index: int
     condition: int
-    cut: CutHit
+    cut: StoredCut
     hit: Hit
 
 
 class HitLedger:
     """Hits of the present condition and the one before, as they are judged.
 
-    Samples of older ones are in the file alone: they would fill the memory.
+    Their samples are in the file alone: they would fill the memory.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class HitLedger:
 
     @property
     def last(self) -> Entered | None:
-        """The hit struck last, trial hits apart; None if its samples are gone."""
+        """The hit struck last, trial hits apart; None if its condition is older."""
         return self._in_memory(self.struck_last)
 
     @property
@@ -63,30 +63,27 @@ class HitLedger:
         struck = (n for n, c in enumerate(self._conditions) if c is not None)
         return max(struck, default=-1)
 
-    def enter(self, hit: Hit, cut: CutHit, condition: int | None) -> None:
+    def enter(self, hit: Hit, condition: int | None) -> None:
         """Log a new hit; None stands for a trial hit, which belongs to no condition."""
         index = len(self._record.hits)
         self._desk.write(hit_judged(hit, number=index, new=True))
         self._record.hits.append(hit)
         self._conditions.append(condition)
         if condition is not None:
-            self._entered.append(Entered(index, condition, cut, hit))
+            self._entered.append(Entered(index, condition, self._stored(hit), hit))
             self._said = []
 
     def keep(self, conditions: tuple[int, int]) -> None:
-        """Keep the samples of two conditions; read those of the first back if needed.
+        """Keep the hits of two conditions at hand, those of older ones in the file.
 
         Args:
             conditions: the present one and the one before.
-
-        Raises:
-            InstrumentError: the disk refuses.
         """
         self._entered = [e for e in self._entered if e.condition in conditions]
         present = conditions[0]
         if not self.any(present):
             self._entered[:0] = [
-                Entered(index, present, self._read_back(hit), hit)
+                Entered(index, present, self._stored(hit), hit)
                 for index, hit in enumerate(self._record.hits)
                 if self._conditions[index] == present and hit.verdict is Verdict.OK
             ]
@@ -172,9 +169,9 @@ class HitLedger:
     def _in_memory(self, index: int) -> Entered | None:
         return next((e for e in self._entered if e.index == index), None)
 
-    def _read_back(self, hit: Hit) -> CutHit:
-        samples = self._recorder.read_back(hit.start, hit.stop)
-        return CutHit(samples, hit.start, hit.trigger - hit.start, whole=True)
+    def _stored(self, hit: Hit) -> StoredCut:
+        count, trigger = hit.stop - hit.start, hit.trigger - hit.start
+        return StoredCut(self._recorder, hit.start, count, trigger)
 
     def _replace(self, entered: Entered, hit: Hit) -> None:
         self._log(entered.index, hit)

@@ -9,8 +9,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.recordings import Channel, Quantity
 from jointbench.signal.frf.frf import Frf
-from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.measure.running_average import mean_coherence
+from jointbench.station.measure.stored_cut import Cut
 from jointbench.station.session_events.view_events import HitAveraged
 
 _STEPS = 128  # of an FRF over its band
@@ -22,7 +22,7 @@ _BEFORE = 1e-3  # [s] of it before the trigger
 def hit_averaged(
     hit: int,
     counts: tuple[int, int],
-    cut: CutHit,
+    cut: Cut,
     frf: Frf | None,
     *,
     channels: Sequence[Channel],

@@ -18,6 +18,7 @@ from jointbench.station.measure.running_average import (
 )
 from jointbench.station.measure.session_log import run_begun
 from jointbench.station.measure.session_record import Record
+from jointbench.station.measure.stored_cut import Cut
 from jointbench.station.measure.trial_hits import Trials
 from jointbench.station.measure.trigger import TriggerWatch
 from jointbench.station.session_events.command_queue import CommandRefused
@@ -79,7 +80,7 @@ class Points:
         least = weak_force(condition.level, good, self._elsewhere())
         hit = self._trigger.judge(cut, condition.point, least)
         if self.on_trial:
-            self._ledger.enter(self._trials.take(cut, hit), cut, None)
+            self._ledger.enter(self._trials.take(cut, hit), None)
             self._trials.show(cut)
             if self.on_trial:
                 self._asker.ask()
@@ -87,7 +88,7 @@ class Points:
                 self._trials.settle()
                 self.begin()
             return
-        self._ledger.enter(hit, cut, condition.number)
+        self._ledger.enter(hit, condition.number)
         if hit.verdict is Verdict.OK:
             self._weed(condition.number)
         self._go_on(cut)
@@ -208,7 +209,7 @@ class Points:
         last = self._ledger.last
         self._go_on(None if last is None else last.cut)
 
-    def _go_on(self, cut: CutHit | None) -> None:
+    def _go_on(self, cut: Cut | None) -> None:
         """Show the last hit, if any, and ask for the next or go to the next point."""
         hits, condition = self._bench.plan.hits, self._route.condition
         good = self._ledger.good(condition.number)
@@ -232,7 +233,7 @@ class Points:
         else:
             self._asker.ask()
 
-    def _show(self, cut: CutHit, frf: Frf | None, count: int) -> None:
+    def _show(self, cut: Cut, frf: Frf | None, count: int) -> None:
         bench = self._bench
         bench.desk.write(
             hit_averaged(

@@ -3,6 +3,8 @@
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.frf.coherence_without import HitSums
 from jointbench.signal.frf.estimators import pair_of_sums
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.frf import KIND_OF_RESPONSE, Frf
@@ -41,6 +43,15 @@ class RunningSums:
     def take_out(self, spectra: HitSpectra) -> None:
         """Take a hit out that was added."""
         self._change(spectra, -1)
+
+    @property
+    def frequency(self) -> FloatArray:
+        """Frequency of the lines [Hz]."""
+        return self._frequency
+
+    def totals(self) -> HitSums:
+        """Return the sums over all hits."""
+        return HitSums(self._force, self._power, self._cross)
 
     def frf(self) -> Frf:
         """Return the average as H1, with coherence and variance from two hits on."""
