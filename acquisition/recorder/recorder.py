@@ -229,7 +229,7 @@ class Recorder:
         """Store what the device had made when the end was requested."""
         until = time.monotonic() + _REST
         with suppress(_Ended):
-            while not self._must_wait() and self._stream.behind():
+            while not self._must_wait() and self._stream.lags():
                 if time.monotonic() > until:
                     return
                 self._take()

@@ -21,7 +21,7 @@ from jointbench.acquisition.session_file.live_write import LiveSession
 
 
 class StoredStream:
-    """Read, store, and say what was stored or is missing.
+    """Read, store, and report what was stored or is missing.
 
     Attributes:
         live: file; None before `create`.
@@ -100,7 +100,7 @@ class StoredStream:
             self.log(gap_entry(item))
         return item
 
-    def behind(self) -> bool:
+    def lags(self) -> bool:
         """Return whether the device has made samples that are not stored yet.
 
         Those count that it had made when this was first asked.
@@ -144,7 +144,7 @@ class StoredStream:
     def settle(self) -> StreamGap | None:
         """Count for the last time; return the gap of what was overwritten.
 
-        What the device makes after `behind` was asked is not wanted any more.
+        What the device makes after `lags` was asked is not wanted any more.
         """
         gap = self._stream.settle(ask=self._until is None)
         with suppress(InstrumentError):  # the disk; closing the file reports it

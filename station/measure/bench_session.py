@@ -229,7 +229,7 @@ def _record(
         try:
             recorder.stop(interrupted=record.interrupted)
         finally:
-            # The session may have ended before it was told of the last ones.
+            # The session may have ended before the last ones were reported.
             record.gaps = recorder.gaps
             desk.leave(read_log(out)[0])
 

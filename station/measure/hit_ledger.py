@@ -74,7 +74,7 @@ class HitLedger:
             self._said = []
 
     def keep(self, conditions: tuple[int, int]) -> None:
-        """Keep the hits of two conditions at hand, those of older ones in the file.
+        """Keep the hits of two conditions in memory, without their samples.
 
         Args:
             conditions: the present one and the one before.

@@ -20,8 +20,11 @@ from jointbench.signal.hits.hit_spectra import (
 )
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
-from jointbench.station.measure.kept_spectra import MOST_KEPT, KeptSpectra
-from jointbench.station.measure.running_sums import RunningSums
+from jointbench.station.measure.running_sums import (
+    MOST_KEPT,
+    KeptSpectra,
+    RunningSums,
+)
 from jointbench.station.measure.stored_cut import Cut
 
 _ELSEWHERE = 0.5  # a slender point is struck more softly than the others

@@ -7,13 +7,19 @@ session that is recorded went the way that a session at the bench goes.
 
 import os
 from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.recordings import Channel
 from jointbench.acquisition.records.source import Run, Source
+
+if TYPE_CHECKING:
+    from jointbench.acquisition.recorder.requests import Setup
+    from jointbench.station.sources.chassis_source import ChassisSource
 
 SCHEMES = ("sim",)
 
@@ -47,7 +53,7 @@ class WholeStream:
         start_time: of its first sample [s].
     """
 
-    source: Source
+    source: "ChassisSource"
     preload: float | None
     start_time: float = 0.0
 
@@ -74,6 +80,10 @@ class WholeStream:
     def blocks(self) -> Iterator[FloatArray]:
         """Yield the blocks of the source."""
         return self.source.blocks()
+
+    def served(self) -> AbstractContextManager["Setup"]:
+        """Serve the chassis of the source for the duration."""
+        return self.source.served()
 
 
 def is_url(text: str) -> bool:
