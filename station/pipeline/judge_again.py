@@ -9,11 +9,10 @@ from jointbench.acquisition.records.provenance import Provenance
 from jointbench.acquisition.records.recordings import Hit, Recording, Verdict
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
+from jointbench.station.session_events.operator_events import PAUSE
 
 NOT_THERE = "-"
 """In place of a verdict where there was no such hit."""
-PAUSE = "pause"
-"""Purpose of what is recorded while the operator pauses."""
 Hits = tuple[Hit, ...]
 
 
