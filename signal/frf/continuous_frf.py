@@ -2,13 +2,14 @@
 """FRFs under continuous excitation: a shaker with a random signal or a sweep.
 
 The record is cut into blocks without a window. In each, the responses to what happened
-before the block and after its end are a smooth function of frequency, which is fitted
-together with the FRF over a few neighbouring lines and removed (local polynomials).
-What is left is averaged as hits are. A window would widen every resonance instead, and
-raise its damping.
+before the block and after its end have the poles of the structure. They are fitted
+together with the FRF over a few neighbouring lines, as rational functions of frequency
+with one pole, and removed. What is left is averaged as hits are. A window would widen
+every resonance instead, and raise its damping.
 
 Source:
-    Pintelon and Schoukens, System Identification (2012), sec. 7.2 (local polynomials).
+    Pintelon and Schoukens, System Identification (2012), sec. 7.2 (local modelling);
+    McKelvey and Guerin, IFAC Proc. 45-16 (2012) 424 (local rational functions).
 """
 
 from collections.abc import Sequence
@@ -38,9 +39,9 @@ BLOCKS = 8
 """Blocks of a record, unless they would be longer than `LONGEST` [-]."""
 LONGEST, SHORTEST = 20.0, 1.0
 """Of a block [s]: longer ones have more lines than modes need."""
-REACH = 6
-"""Neighbours on each side of a line that a local polynomial is fitted to [-]."""
-_DEGREE = 4
+REACH = 5
+"""Neighbours on each side of a line that a local function is fitted to [-]."""
+_DEGREE = 2
 
 
 def estimate_continuous_frf(
@@ -58,7 +59,7 @@ def estimate_continuous_frf(
 
     Returns:
         The average over the blocks, with coherence from their scatter; the variance
-        includes what local polynomials do not explain.
+        includes what local functions do not explain.
 
     Raises:
         BadData: a record is shorter than two blocks, or has no force.
@@ -76,7 +77,7 @@ def estimate_continuous_frf(
     if not np.any(np.abs(force) > 0):
         raise BadData(f"the force of run {first.name!r} is zero; check the load cell")
     lines = slice(REACH, force.shape[1] - REACH)
-    frequency = np.fft.rfftfreq(count, 1 / rate)[lines]
+    frequency = np.asarray(np.fft.rfftfreq(count, 1 / rate)[lines], dtype=float)
     local = _LocalFit(force)
     left = [local.without_transient(responses[:, n]) for n in range(len(rows))]
     pairs = [_pair(force[:, lines], response, estimator) for response, _ in left]
@@ -88,7 +89,7 @@ def estimate_continuous_frf(
         bias=estimator.bias,
         blocks=force.shape[0],
         block_s=count / rate,
-        window="none; transients removed by local polynomials",
+        window="none; transients removed by local rational functions",
     )
     return Frf(
         frequency=frequency,
@@ -114,7 +115,7 @@ def _channels(recording: Recording, rows: Sequence[int]) -> tuple[Channel, ...]:
 def _block_length(recordings: Sequence[Recording]) -> float:
     """Return a length of which the records hold enough blocks [s]."""
     seconds = [r.samples.shape[1] / r.sample_rate for r in recordings]
-    length = min(LONGEST, sum(seconds) / BLOCKS, *seconds)
+    length = float(min(LONGEST, sum(seconds) / BLOCKS, *seconds))
     if length < SHORTEST:
         raise BadData(
             f"a shaker run of {sum(seconds):.3g} s is too short for FRFs; record at "
@@ -126,12 +127,9 @@ def _block_length(recordings: Sequence[Recording]) -> float:
 def _spectra(recording: Recording, rows: Sequence[int], count: int) -> ComplexArray:
     """Return the spectra of blocks, shape (n_blocks, n_rows, n_lines)."""
     blocks = recording.samples.shape[1] // count
-    return np.array(
-        [
-            np.fft.rfft(recording.samples[:, n * count : (n + 1) * count][list(rows)])
-            for n in range(blocks)
-        ]
-    ) / np.sqrt(count)
+    parts = (recording.samples[:, n * count : (n + 1) * count] for n in range(blocks))
+    spectra = [np.fft.rfft(part[list(rows)]) for part in parts]
+    return np.asarray(spectra, dtype=complex) / np.sqrt(count)
 
 
 def _pair(
@@ -145,7 +143,11 @@ def _pair(
 
 
 class _LocalFit:
-    """Local polynomials of the FRF, shared by the blocks, and of each transient."""
+    """Local rational functions: numerators of FRF and transients over one pole.
+
+    The pole is shared, as FRF and transients are of one structure; each block has a
+    transient of its own.
+    """
 
     def __init__(self, force: ComplexArray) -> None:
         """Prepare the fit around every line that has neighbours enough.
@@ -153,22 +155,19 @@ class _LocalFit:
         Args:
             force: spectra, shape (n_blocks, n_lines).
         """
-        steps = np.arange(-REACH, REACH + 1) / REACH
-        powers = steps[:, None] ** np.arange(_DEGREE + 1)
+        self._steps = np.arange(-REACH, REACH + 1) / REACH
+        powers = self._steps[:, None] ** np.arange(_DEGREE + 1)
         hat = powers @ np.linalg.pinv(powers)
-        self._without, self._centre = np.eye(steps.size) - hat, hat[REACH]
+        self._without, self._centre = np.eye(self._steps.size) - hat, hat[REACH]
         # Terms of the FRF over the neighbours, (n_terms, n_blocks, n_lines, n_near).
         self._terms = powers.T[:, None, None, :] * _near(force)
-        self._free = self._terms @ self._without
-        self._normal = np.einsum("sbkr,tbkr->kst", self._free.conj(), self._free)
 
     def without_transient(
         self, response: ComplexArray
     ) -> tuple[ComplexArray, FloatArray]:
         """Return spectra of a response without transients, and its noise.
 
-        The noise is what the local polynomials do not explain: noise of the response,
-        and curvature of a resonance that is narrow for the block.
+        The noise is what the local functions do not explain.
 
         Args:
             response: spectra, shape (n_blocks, n_lines).
@@ -177,14 +176,18 @@ class _LocalFit:
             Spectra, shape (n_blocks, n_lines), and power of the noise, (n_lines,).
         """
         near = _near(response)
-        right = np.einsum("sbkr,bkr->ks", self._free.conj(), near)
-        ridge = 1e-12 * np.trace(self._normal, axis1=1, axis2=2).real
-        normal = self._normal + (ridge + 1e-300)[:, None, None] * np.eye(_DEGREE + 1)
-        found = np.linalg.solve(normal, right[..., None])[..., 0]
-        rest = near - np.einsum("ks,sbkr->bkr", found, self._terms)
+        terms = np.concatenate((self._terms, (-self._steps * near)[None]))
+        free = terms @ self._without
+        normal = np.einsum("sbkr,tbkr->kst", free.conj(), free)
+        right = np.einsum("sbkr,bkr->ks", free.conj(), near)
+        # Terms of force and of response have different units.
+        scale = np.sqrt(np.einsum("kss->ks", normal).real) + 1e-300
+        normal /= scale[:, :, None] * scale[:, None, :]
+        normal += 1e-12 * np.eye(len(terms))
+        found = np.linalg.solve(normal, (right / scale)[..., None])[..., 0] / scale
+        rest = near - np.einsum("ks,sbkr->bkr", found, terms)
         unexplained = np.sum(np.abs(rest @ self._without) ** 2, axis=(0, 2))
-        terms = _DEGREE + 1
-        freedom = len(response) * (2 * REACH + 1 - terms) - terms
+        freedom = len(response) * (2 * REACH - _DEGREE) - len(terms)
         return near[..., REACH] - rest @ self._centre, unexplained / freedom
 
 

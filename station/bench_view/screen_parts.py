@@ -54,8 +54,8 @@ def progress_line(state: SessionState, now: float) -> Text:
     end = now if state.ended is None else state.last_time
     elapsed = 0.0 if state.first_time is None else max(0.0, end - state.first_time)
     if state.run is not None and state.run.duration is not None:
-        left = max(0.0, state.run_time + state.run.duration - end)
-        return Text(f"{_clock(elapsed)} elapsed  {_clock(left)} left of this run")
+        rest = max(0.0, state.run_time + state.run.duration - end)
+        return Text(f"{_clock(elapsed)} elapsed  {_clock(rest)} left of this run")
     left = seconds_left(state, end)
     here = sum(c.left for c in conditions if c.mark is ConditionMark.NOW)
     words = [
