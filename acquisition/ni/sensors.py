@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import date
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import Channel, Quantity
+from jointbench.acquisition.records.recordings import MOTIONS, Channel, Quantity
 
 _SAME_CURRENT = 0.06  # an NI 443x reports 2.1 mA, its data sheet states 2 mA
 
@@ -58,12 +58,11 @@ class Sensor:
     calibration_months: int = 12
 
 
-def require_table(sensors: Sequence[Sensor]) -> None:
-    """Check the consistency of a table.
+def require_unique(sensors: Sequence[Sensor]) -> None:
+    """Check that no name and no input of a table is used twice.
 
     Raises:
-        UsageError: there is not exactly one force channel, no response, or a name or
-            an input is used twice.
+        UsageError: one is.
     """
     names = [channel.name for channel in table_channels(sensors)]
     inputs = [axis.physical for sensor in sensors for axis in sensor.axes]
@@ -74,12 +73,22 @@ def require_table(sensors: Sequence[Sensor]) -> None:
                 f"{what} {twice[0]!r} is used twice in the channel table; each sensor "
                 "and axis needs its own"
             )
+
+
+def require_table(sensors: Sequence[Sensor]) -> None:
+    """Check that a table fits a hammer session.
+
+    Raises:
+        UsageError: there is not exactly one force channel, no response, or a name or
+            an input is used twice.
+    """
+    require_unique(sensors)
     forces = sum(len(s.axes) for s in sensors if s.quantity is Quantity.FORCE)
-    if forces != 1 or len(names) < 2:
+    moving = sum(len(s.axes) for s in sensors if s.quantity in MOTIONS)
+    if forces != 1 or not moving:
         raise UsageError(
-            f"the channel table has {forces} force channels and "
-            f"{len(names) - forces} others; a hammer session needs one hammer and at "
-            "least one response"
+            f"the channel table has {forces} force channels and {moving} channels of a "
+            "motion; a hammer session needs one hammer and at least one response"
         )
 
 

@@ -31,7 +31,7 @@ from jointbench.simulators.chassis.modules.inventory import (
 )
 from jointbench.simulators.chassis.modules.lookup import described
 from jointbench.simulators.chassis.protocol import add_servicer
-from jointbench.simulators.chassis.specimen import StreamedSpecimen
+from jointbench.simulators.chassis.specimen import MachineSpecimen, StreamedSpecimen
 from jointbench.simulators.chassis.tasks.acquisition import Pace
 from jointbench.simulators.chassis.tasks.signals import (
     Signals,
@@ -39,6 +39,7 @@ from jointbench.simulators.chassis.tasks.signals import (
     SpecimenSignals,
 )
 from jointbench.simulators.chassis.tasks.task import SharedBench, SimulatedTask
+from jointbench.simulators.machines.running_machine import RunningMachine
 from jointbench.simulators.plates.plates_bench import (
     LivePlates,
     PlannedStroke,
@@ -237,6 +238,8 @@ def _specimen(
         return None
     if isinstance(bench, PlatesBench):
         return LivePlates(bench)
+    if isinstance(bench, RunningMachine):
+        return MachineSpecimen(bench)
     return StreamedSpecimen(bench)
 
 

@@ -53,6 +53,9 @@ def progress_line(state: SessionState, now: float) -> Text:
     conditions = condition_states(state)
     end = now if state.ended is None else state.last_time
     elapsed = 0.0 if state.first_time is None else max(0.0, end - state.first_time)
+    if state.run is not None and state.run.duration is not None:
+        rest = max(0.0, state.run_time + state.run.duration - end)
+        return Text(f"{_clock(elapsed)} elapsed  {_clock(rest)} left of this run")
     left = seconds_left(state, end)
     here = sum(c.left for c in conditions if c.mark is ConditionMark.NOW)
     words = [
@@ -66,6 +69,8 @@ def progress_line(state: SessionState, now: float) -> Text:
 def point_lines(state: SessionState, *, width: int, rows: int) -> Iterator[Text]:
     """Yield the points of the plan, by torque and level, with where each stands."""
     conditions = condition_states(state)
+    if not conditions:
+        return
     count = {mark: sum(c.mark is mark for c in conditions) for mark in ConditionMark}
     yield Text(
         f"points: {count[ConditionMark.DONE]} done ✓  "

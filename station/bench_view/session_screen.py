@@ -27,7 +27,7 @@ _MOST_PLOT = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class ViewContext:
     """What a view knows beside the events.
 
     Attributes:
@@ -63,7 +63,7 @@ class Look:
 
 
 def session_lines(
-    state: SessionState, around: Surroundings, look: Look
+    state: SessionState, around: ViewContext, look: Look
 ) -> tuple[Text, ...]:
     """Return the screen, no line wider and no more lines than the terminal."""
     above = tuple(_above(state, around, look))
@@ -81,7 +81,7 @@ def session_lines(
     return tuple(fitted(line, look.width) for line in lines)
 
 
-def _above(state: SessionState, around: Surroundings, look: Look) -> Iterator[Text]:
+def _above(state: SessionState, around: ViewContext, look: Look) -> Iterator[Text]:
     tall = look.height >= 40
     yield head_line(state, around.file, around.free, look.width)
     yield from task_lines(state, width=look.width, tall=tall)

@@ -66,6 +66,9 @@ def _task(state: SessionState) -> tuple[str, str, str]:
         bolt = state.tighten
         letters = f"BOLT {bolt.bolt} {bolt.target:g} Nm"
         return letters, f"tighten bolt {bolt.bolt} of {bolt.bolts}", "bold magenta"
+    if state.run is not None and state.run.duration is not None:
+        words = f"{state.run.purpose} run {state.run.name!r} is recorded"
+        return "REC", f"{words}, {state.run.duration:g} s", "bold red"
     if not state.asked:
         return "WAIT", "keep the hammer still: its noise is measured", "bold"
     return _strike(state)

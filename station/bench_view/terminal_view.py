@@ -14,13 +14,13 @@ from rich.live import Live
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.station.bench_view.bell import Bell
 from jointbench.station.bench_view.level_meter import LevelMeter
+from jointbench.station.bench_view.live_view import LiveView
 from jointbench.station.bench_view.operator_keys import KEYS, OperatorKeys
 from jointbench.station.bench_view.session_screen import (
     Look,
-    Surroundings,
+    ViewContext,
     session_lines,
 )
-from jointbench.station.bench_view.session_view import SessionView
 from jointbench.station.bench_view.text_screen import TextScreen
 from jointbench.station.screen.key_presses import Poll, keyboard
 from jointbench.station.session_events.command_codec import Command
@@ -34,7 +34,7 @@ _DISK_EVERY = 5.0  # [s] between looks at the disk
 
 @dataclass(slots=True)
 class TerminalView:
-    """A `SessionView` that draws.
+    """A `LiveView` that draws.
 
     Attributes:
         live: where to.
@@ -95,7 +95,7 @@ class TerminalView:
         self._drawn = time.monotonic()
         begun = self.state.begun
         levels = () if begun is None else self._meter.levels(begun.channels)
-        around = Surroundings(str(self.file), self._room(), self.clock(), levels)
+        around = ViewContext(str(self.file), self._room(), self.clock(), levels)
         size = self.live.console.size
         look = Look(
             width=size.width,
@@ -119,7 +119,7 @@ class TerminalView:
 
 
 @contextmanager
-def viewing(screen: Console, file: Path) -> Iterator[SessionView]:
+def viewing(screen: Console, file: Path) -> Iterator[LiveView]:
     """Give a session the full screen where there is a terminal, lines where not.
 
     Args:

@@ -29,7 +29,7 @@ from jointbench.station.session_events.view_events import (
 
 @dataclass(slots=True)
 class TextScreen:
-    """A `SessionView` that prints a line for each event.
+    """A `LiveView` that prints a line for each event.
 
     Attributes:
         screen: where to.

@@ -56,25 +56,45 @@ def record_command(
     source: Annotated[
         str,
         typer.Argument(
-            metavar="URL",
-            help="Bench: 'sim:two-body-campaign', 'sim:bolted-plates', 'sim:lap-beam' "
-            "or 'sim:column-on-bed', with parameters.",
+            metavar="PLAN|URL",
+            help="Plan of timed runs (TOML); or a bench: 'sim:two-body-campaign', "
+            "'sim:bolted-plates', 'sim:lap-beam' or 'sim:column-on-bed'.",
         ),
     ],
     out: SessionOut,
+    instrument: Annotated[
+        str | None,
+        typer.Option(
+            "--source",
+            metavar="URL",
+            help="Instrument of a plan: 'ni:', 'ni+grpc://HOST:PORT', 'sim:spindle' or "
+            "'sim:shaker'; from the plan by default.",
+        ),
+    ] = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Record a whole campaign on a bench into a session file.
+    """Record timed runs of any channels by a plan, or a whole simulated campaign.
 
-    All hits are judged after the recording. A flexible bench (two bodies on bolts)
-    gives a file of raw hits; nominal values and what it hides go beside it as JSON.
+    Runs of a plan are operating runs, shaker runs, or plain recordings; a session of
+    hammer hits is recorded by 'measure'. Of a simulated campaign all hits are judged
+    after the recording; nominal values and what it hides go beside it.
 
     Examples:
+        jointbench record examples/operating.toml --out spindle.h5
+        jointbench record plan.toml --out run.h5 --source ni:
         jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out session.h5
         jointbench record 'sim:bolted-plates?seed=3&hide=loose_bolt' --out hits.h5
     """
+    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
+    if source.lower().endswith(".toml"):
+        from jointbench.station.continuous.record_runs import run_record_plan
+
+        whole = run_record_plan(
+            Path(source), out, source=instrument, overwrite=force, json_target=json
+        )
+        return 0 if whole else EXIT_QUALITY
     from jointbench.simulators.flexible.flexible_url import is_flexible_url
 
     if is_flexible_url(source):

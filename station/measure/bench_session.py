@@ -27,7 +27,7 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live
 from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.live_write import channel_rows
-from jointbench.station.bench_view.session_view import SessionView
+from jointbench.station.bench_view.live_view import LiveView
 from jointbench.station.bench_view.terminal_view import viewing
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.session_place import (
@@ -130,7 +130,7 @@ def _naming_file(place: Place, screen: Console) -> Iterator[None]:
 
 
 def measure(
-    plan: MeasurePlan, opened: OpenChassis, out: Path, view: SessionView
+    plan: MeasurePlan, opened: OpenChassis, out: Path, view: LiveView
 ) -> Measured:
     """Record a session into `out` and finish its file, come what may.
 
@@ -192,7 +192,7 @@ def _record(
     plan: MeasurePlan,
     opened: OpenChassis,
     out: Path,
-    running: tuple[RecorderProcess, SessionView, tuple[str, ...], Record],
+    running: tuple[RecorderProcess, LiveView, tuple[str, ...], Record],
 ) -> None:
     recorder, view, warnings, record = running
     desk = SessionDesk(recorder, view)

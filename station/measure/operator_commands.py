@@ -7,7 +7,6 @@ from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.points import Points
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.trigger import TriggerWatch
-from jointbench.station.pipeline.judge_again import PAUSE
 from jointbench.station.session_events.command_codec import Command
 from jointbench.station.session_events.command_queue import CommandRefused
 from jointbench.station.session_events.flow_commands import (
@@ -27,6 +26,7 @@ from jointbench.station.session_events.hit_commands import (
     UndoVerdict,
 )
 from jointbench.station.session_events.operator_events import (
+    PAUSE,
     NoteAdded,
     PauseChanged,
     WarningsSeen,

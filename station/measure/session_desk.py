@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
-from jointbench.station.bench_view.session_view import SessionView
+from jointbench.station.bench_view.live_view import LiveView
 from jointbench.station.measure.plan import Condition
 from jointbench.station.session_events.command_queue import (
     Answer,
@@ -33,7 +33,7 @@ class SessionDesk:
     """
 
     recorder: RecorderProcess
-    view: SessionView
+    view: LiveView
     commands: CommandQueue = field(default_factory=CommandQueue)
     warned: int = 0
     _asked: Asked | None = None

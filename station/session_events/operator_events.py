@@ -4,6 +4,9 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+PAUSE = "pause"
+"""Name and purpose of what is recorded while the operator pauses."""
+
 
 @dataclass(frozen=True, slots=True)
 class CommandAnswered:

@@ -48,6 +48,8 @@ class SessionState:
         hits: latest verdict of each hit, by its number.
         struck_for: name of the condition of each hit, empty for a trial hit.
         on_trial: whether hits are trial hits.
+        run: that was begun last, None before.
+        run_time: when, since 1970 [s].
         tighten: bolt that is tightened now, None for none.
         average: after the last hit, None before.
         finished: names of the conditions that are over, with whether given up.
@@ -74,6 +76,8 @@ class SessionState:
     hits: dict[int, HitJudged] = field(default_factory=dict)
     struck_for: dict[int, str] = field(default_factory=dict)
     on_trial: bool = False
+    run: RunBegun | None = None
+    run_time: float = 0.0
     tighten: BoltAsked | None = None
     average: HitAveraged | None = None
     finished: dict[str, bool] = field(default_factory=dict)
@@ -113,8 +117,14 @@ def _after(state: SessionState, stamped: Stamped) -> SessionState:
             return replace(state, average=average)
         case Asked(name=name, done=done, planned=planned):
             return replace(state, asked=name, done=done, planned=planned)
-        case RunBegun(purpose=purpose):
-            return replace(state, on_trial=purpose == "trial", tighten=None)
+        case RunBegun(purpose=purpose) as run:
+            return replace(
+                state,
+                on_trial=purpose == "trial",
+                tighten=None,
+                run=run,
+                run_time=stamped.time,
+            )
         case ConditionDone(name=name, given_up=given_up):
             return replace(state, finished={**state.finished, name: given_up})
         case CheckDone() as check:

@@ -32,9 +32,14 @@ from jointbench.acquisition.formats.even_steps import (
 from jointbench.acquisition.formats.header_units import hit_columns_stated, units_words
 from jointbench.acquisition.formats.tables import Table, load_table
 from jointbench.acquisition.records.provenance import Step, step
-from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.acquisition.records.recordings import (
+    MECHANICAL,
+    Channel,
+    Quantity,
+    Recording,
+)
 
-_QUANTITIES = tuple(quantity.value for quantity in Quantity)
+_QUANTITIES = tuple(quantity.value for quantity in MECHANICAL)
 
 
 def read_recording(

@@ -18,7 +18,7 @@ from jointbench.station.bench_view.level_meter import Level, LevelMeter
 from jointbench.station.bench_view.operator_keys import KEYS, OperatorKeys
 from jointbench.station.bench_view.session_screen import (
     Look,
-    Surroundings,
+    ViewContext,
     session_lines,
 )
 from jointbench.station.bench_view.terminal_view import TerminalView
@@ -127,7 +127,7 @@ def lines(
     events: Iterable[Event], width: int = 80, height: int = 24, prompt: str = ""
 ) -> list[str]:
     """Return the screen of events as plain text."""
-    around = Surroundings("/long/" * 30 + "s.h5", 3_000_000_000, 1010.0, LEVELS)
+    around = ViewContext("/long/" * 30 + "s.h5", 3_000_000_000, 1010.0, LEVELS)
     look = Look(width, height, prompt=prompt, keys=KEYS)
     return [line.plain for line in session_lines(after(*events), around, look)]
 
@@ -171,7 +171,7 @@ def test_the_verdict_is_a_band_of_colour_over_the_whole_width(
     name: str, word: str, style: str
 ) -> None:
     """With the number of the hit and the reason below."""
-    around = Surroundings("s.h5", None, 1010.0)
+    around = ViewContext("s.h5", None, 1010.0)
     shown = session_lines(after(*STATES[name]), around, Look(80, 24))
     (band,) = (line for line in shown if "HIT 1" in line.plain)
     assert word in band.plain
@@ -242,7 +242,7 @@ def test_a_curve_rises_from_its_low_to_its_high_and_has_numbers_at_its_axes() ->
 def test_the_channel_of_the_frf_is_chosen_by_key() -> None:
     """Once on and once back."""
     keys = OperatorKeys()
-    around = Surroundings("s.h5", None, 1010.0)
+    around = ViewContext("s.h5", None, 1010.0)
     for key, name in (("c", "FRF of a2"), ("C", "FRF of a1")):
         keys.press(key, SessionState())
         look = Look(80, 30, channel=keys.channel)

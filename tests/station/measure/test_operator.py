@@ -21,7 +21,7 @@ from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates_bench import PlatesBench
 from jointbench.station.bench_view.session_screen import (
     Look,
-    Surroundings,
+    ViewContext,
     session_lines,
 )
 from jointbench.station.bench_view.terminal_view import TerminalView
@@ -346,7 +346,7 @@ def test_a_second_view_in_the_middle_of_a_session_draws_the_same_screen(
     drawn.append((view.state, run_watch(path, once=True, json_target=None)))
     for own, late in drawn:
         assert late == own
-        around = Surroundings("s.h5", None, late.last_time)
+        around = ViewContext("s.h5", None, late.last_time)
         one, other = (session_lines(s, around, Look(80, 24)) for s in (own, late))
         assert [line.plain for line in one] == [line.plain for line in other]
     assert view.state.ended is not None

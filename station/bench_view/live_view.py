@@ -9,7 +9,7 @@ from jointbench.station.session_events.command_codec import Command
 from jointbench.station.session_events.event_codec import Stamped
 
 
-class SessionView(Protocol):
+class LiveView(Protocol):
     """A screen, or lines of text."""
 
     def follow(self, events: Sequence[Stamped]) -> None:
