@@ -13,6 +13,7 @@ from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.session_file.live_read import log_entries
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 from jointbench.acquisition.session_file.store import damage_named
 
 EVENTS, LOG = "events", "log"
@@ -64,7 +65,7 @@ def read_log(path: Path) -> tuple[tuple[dict[str, Any], ...], bool]:
     Raises:
         BadData: it cannot be opened, or is damaged.
     """
-    with open_guarded(path) as file, damage_named(path):
+    with open_guarded(path, limits=SESSION_LIMITS) as file, damage_named(path):
         live = read_attribute(file, "schema") == LIVE_SCHEMA
         dataset = file.get(LOG if live else f"{EVENTS}/{LOG}")
         if not isinstance(dataset, h5py.Dataset):
@@ -83,7 +84,7 @@ def read_last(path: Path, count: int) -> FloatArray | None:
         The samples; None where the file is no recording (any more).
     """
     try:
-        with open_guarded(path) as file:
+        with open_guarded(path, limits=SESSION_LIMITS) as file:
             samples = file.get("samples")
             if not isinstance(samples, h5py.Dataset):
                 return None

@@ -11,21 +11,23 @@ from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.live_read import LiveContent, read_live
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
-from jointbench.acquisition.session_file.store import (
-    damage_named,
-    read_session,
+from jointbench.acquisition.session_file.open_session import (
+    open_session,
+    read_all_samples,
 )
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
+from jointbench.acquisition.session_file.store import damage_named
 
 
 def is_live(file: Path) -> bool:
     """Return whether a file is a recording that was not finished."""
-    with open_guarded(file) as opened, damage_named(file):
+    with open_guarded(file, limits=SESSION_LIMITS) as opened, damage_named(file):
         return read_attribute(opened, "schema") == LIVE_SCHEMA
 
 
 def live_content(file: Path) -> LiveContent | None:
     """Return what a recording's file holds, None for a file of another layout."""
-    with open_guarded(file) as opened, damage_named(file):
+    with open_guarded(file, limits=SESSION_LIMITS) as opened, damage_named(file):
         if read_attribute(opened, "schema") != LIVE_SCHEMA:
             return None
         return read_live(opened)
@@ -41,7 +43,8 @@ def problems_of(file: Path) -> list[str]:
             found.append(f"{content.damaged} blocks have a wrong checksum")
         return found
     try:
-        return _session_problems(read_session(file))
+        read_all_samples(file)
+        return _session_problems(open_session(file))
     except BadData as error:
         return [str(error)]
 
