@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 """What hits mean for the plan: verdict, average, next hit, next point, and back."""
 
+from dataclasses import asdict
+
 from jointbench.acquisition.file_access.quoting import shown
 from jointbench.acquisition.records.recordings import Verdict
 from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.further_hits import further_hits
 from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.measure.asking import Asker
 from jointbench.station.measure.bench_checks import CheckBook
@@ -22,7 +25,10 @@ from jointbench.station.measure.stored_cut import Cut
 from jointbench.station.measure.trial_hits import Trials
 from jointbench.station.measure.trigger import TriggerWatch
 from jointbench.station.session_events.command_queue import CommandRefused
-from jointbench.station.session_events.hit_events import CheckDone
+from jointbench.station.session_events.hit_events import CheckDone, GainForecast
+
+_MORE = 2
+"""Further hits that a forecast is made for."""
 
 
 class Points:
@@ -245,6 +251,12 @@ class Points:
                 sample_rate=bench.recorder.sample_rate,
             )
         )
+
+        forecast = () if frf is None else further_hits(frf, more=_MORE)
+        if forecast:
+            hit = self._ledger.last.index if self._ledger.last else 0
+            peaks = [asdict(peak) for peak in forecast]
+            bench.desk.write(GainForecast(hit, _MORE, peaks))
 
     def _finish(self, frf: Frf | None, *, given_up: bool) -> None:
         """Check what can be checked, and go to the next condition."""

@@ -23,6 +23,7 @@ from jointbench.station.session_events.flow_events import (
 from jointbench.station.session_events.hit_events import (
     BoltRead,
     CheckDone,
+    GainForecast,
     HitJudged,
     SettingProposed,
     VerdictChanged,
@@ -56,6 +57,7 @@ Event = (
     | SessionEnded
     | SessionBegun
     | HitAveraged
+    | GainForecast
     | BoltAsked
     | CommandAnswered
     | NoteAdded
@@ -69,6 +71,7 @@ _KINDS: Mapping[str, type[Event]] = {
         *(HitJudged, VerdictChanged, SettingProposed, CheckDone, BoltRead),
         *(RunBegun, Asked, ConditionDone, Said, Warned, CableChanged),
         *(SamplesMissing, SessionEnded, SessionBegun, HitAveraged, CommandAnswered),
+        GainForecast,
         *(NoteAdded, PauseChanged, WarningsSeen, ConditionReopened, BoltAsked),
     )
 }

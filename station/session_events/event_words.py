@@ -15,6 +15,7 @@ from jointbench.station.session_events.flow_events import (
 from jointbench.station.session_events.hit_events import (
     BoltRead,
     CheckDone,
+    GainForecast,
     HitJudged,
     SettingProposed,
 )
@@ -72,6 +73,8 @@ def _view_words(event: Event) -> str:
     match event:
         case SessionBegun(channels=channels, conditions=conditions):
             return f"{len(channels)} channels, {len(conditions)} conditions"
+        case GainForecast(more=more, peaks=peaks):
+            return f"{more} more hits: " + "; ".join(map(_gain, peaks))
         case HitAveraged(hit=hit, good=good, wanted=wanted):
             mean = event.mean_coherence
             coherence = "" if mean is None else f", coherence {mean:.3f}"
@@ -89,3 +92,13 @@ def _view_words(event: Event) -> str:
         case BoltAsked(bolt=bolt, bolts=bolts, target=target):
             return f"bolt {bolt} of {bolts} to {target:g} N m"
     return ""
+
+
+def _gain(peak: dict[str, float]) -> str:
+    """Return the scatter of one resonance now and after further hits."""
+    now, later = peak["frequency_sd"], peak["frequency_sd_after"]
+    damping = 100 * peak["damping_sd"], 100 * peak["damping_sd_after"]
+    return (
+        f"{peak['frequency']:.1f} Hz from {now:.2g} to {later:.2g} Hz, its damping from "
+        f"{damping[0]:.2g} to {damping[1]:.2g} %"
+    )
