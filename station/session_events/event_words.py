@@ -99,6 +99,6 @@ def _gain(peak: dict[str, float]) -> str:
     now, later = peak["frequency_sd"], peak["frequency_sd_after"]
     damping = 100 * peak["damping_sd"], 100 * peak["damping_sd_after"]
     return (
-        f"{peak['frequency']:.1f} Hz from {now:.2g} to {later:.2g} Hz, its damping from "
+        f"{peak['frequency']:.1f} Hz from {now:.2g} to {later:.2g} Hz, damping from "
         f"{damping[0]:.2g} to {damping[1]:.2g} %"
     )
