@@ -12,7 +12,7 @@ from jointbench.acquisition.ni.sensors import Sensor, table_channels
 from jointbench.acquisition.records.recordings import Channel, Quantity
 from jointbench.station.doctor.bench_finding import BenchFinding, bad, good, look
 
-SHEET_RATIO = 3.0
+STATED_RATIO = 3.0
 """Noise over that of the data sheet from which it is looked at [-]."""
 RANGE_SHARE = 1e-3
 """Noise over the range from which it is looked at without a data sheet [-]."""
@@ -53,11 +53,11 @@ def noise_findings(
         sensors: the channel table.
         sample_rate: [Hz].
     """
-    sheets = [sensor.noise for sensor in sensors for _ in sensor.axes]
-    for channel, row, sheet in zip(
-        table_channels(sensors), samples, sheets, strict=True
+    stated_noises = [sensor.noise for sensor in sensors for _ in sensor.axes]
+    for channel, row, stated in zip(
+        table_channels(sensors), samples, stated_noises, strict=True
     ):
-        yield _finding(channel, quiet(row, sample_rate=sample_rate), sheet)
+        yield _finding(channel, quiet(row, sample_rate=sample_rate), stated)
 
 
 def quiet(samples: FloatArray, *, sample_rate: float) -> Quiet:
@@ -77,7 +77,7 @@ def quiet(samples: FloatArray, *, sample_rate: float) -> Quiet:
     return Quiet(float(samples.std()), mean, shares[most], _MAINS[most])
 
 
-def _finding(channel: Channel, found: Quiet, sheet: float | None) -> BenchFinding:
+def _finding(channel: Channel, found: Quiet, stated: float | None) -> BenchFinding:
     full = channel.range or 1.0
     unit = example_unit(channel.quantity)
     if channel.quantity is Quantity.TACHO:
@@ -97,24 +97,24 @@ def _finding(channel: Channel, found: Quiet, sheet: float | None) -> BenchFindin
             f"{seen}: an input that is connected is never so quiet",
             "check cable, sensor and input",
         )
-    if found.hum > HUM_SHARE and found.rms > _limit(full, sheet):
+    if found.hum > HUM_SHARE and found.rms > _limit(full, stated):
         return look(
             "noise",
             channel.name,
             f"{seen}, {found.hum:.0%} of it at {found.mains:g} Hz and its multiples",
             "mains hum: ground at one place only, keep cables away from drives",
         )
-    if found.rms > _limit(full, sheet):
-        against = "" if sheet is None else f", data sheet {sheet:.3g} {unit}"
+    if found.rms > _limit(full, stated):
+        against = "" if stated is None else f", data sheet {stated:.3g} {unit}"
         return look(
             "noise",
             channel.name,
             f"{seen}{against}",
             "is the bench at rest? then check mounting, cable and range",
         )
-    against = "" if sheet is None else f", data sheet {sheet:.3g} {unit}"
+    against = "" if stated is None else f", data sheet {stated:.3g} {unit}"
     return good("noise", channel.name, seen + against)
 
 
-def _limit(full: float, sheet: float | None) -> float:
-    return RANGE_SHARE * full if sheet is None else SHEET_RATIO * sheet
+def _limit(full: float, stated: float | None) -> float:
+    return RANGE_SHARE * full if stated is None else STATED_RATIO * stated

@@ -88,7 +88,7 @@ def test_a_plan_without_a_source_asks_for_one() -> None:
         findings("", None)
 
 
-def test_noise_is_compared_with_the_data_sheet_and_hum_is_recognised() -> None:
+def test_noise_is_compared_with_the_stated_one_and_hum_is_recognised() -> None:
     """Data sheet 0.01: 0.02 is good, 0.05 is not, and a 50 Hz line is hum."""
     rng = np.random.default_rng(1)
     time = np.arange(20_000) / 10_000.0
