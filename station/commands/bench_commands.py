@@ -153,11 +153,17 @@ def doctor_command(
         ),
     ] = None,
     noise: Annotated[
-        str, typer.Option(metavar="TIME", help="Duration of the noise.")
+        str,
+        typer.Option(
+            metavar="QUANTITY", help="Duration of the noise, for example '5 s'."
+        ),
     ] = "10 s",
     hit: Annotated[
         str,
-        typer.Option(metavar="TIME", help="Longest time for one hit; '0 s' for none."),
+        typer.Option(
+            metavar="QUANTITY",
+            help="Longest time for one hit, for example '30 s'; '0 s' for none.",
+        ),
     ] = "30 s",
     json: Json = None,
     debug: Debug = False,
