@@ -12,9 +12,9 @@ from jointbench.acquisition.file_access.quoting import shown
 from jointbench.acquisition.formats.columns import Column
 from jointbench.acquisition.formats.table_cells import split_row
 from jointbench.acquisition.formats.tables import Table
-from jointbench.acquisition.records.recordings import MECHANICAL
+from jointbench.acquisition.records.recordings import Quantity
 
-_KINDS = ("time", *(quantity.value for quantity in MECHANICAL), "voltage")
+_KINDS = ("time", *(quantity.value for quantity in Quantity.mechanical()), "voltage")
 # ``Force [N]``, ``Force (N)``, ``Force in N``, and ``F / N`` as standards write it.
 _CELL = re.compile(
     r"(?P<name>[^\[(/]*?)\s*"

@@ -31,17 +31,12 @@ from jointbench.acquisition.formats.columns import (
     parse_columns,
 )
 from jointbench.acquisition.records.provenance import step
-from jointbench.acquisition.records.recordings import (
-    MECHANICAL,
-    Channel,
-    Quantity,
-    Recording,
-)
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
 MOST_VALUES = 100_000_000
 MOST_CHANNELS = 4096
 _VOLTAGE = "voltage"
-QUANTITIES = tuple(quantity.value for quantity in MECHANICAL)
+QUANTITIES = tuple(quantity.value for quantity in Quantity.mechanical())
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +162,9 @@ def _as_stated(
 
 def _quantity_of(unit: str) -> Quantity | None:
     """Return the single quantity of a unit."""
-    found = [quantity for quantity in MECHANICAL if is_unit(unit, quantity.value)]
+    found = [
+        quantity for quantity in Quantity.mechanical() if is_unit(unit, quantity.value)
+    ]
     return found[0] if len(found) == 1 else None
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import date
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import MOTIONS, Channel, Quantity
+from jointbench.acquisition.records.recordings import Channel, Quantity
 
 _SAME_CURRENT = 0.06  # an NI 443x reports 2.1 mA, its data sheet states 2 mA
 
@@ -43,6 +43,7 @@ class Sensor:
         serial: serial number, empty if not stated.
         calibrated: day of the last calibration, None if not stated.
         calibration_months: how long a calibration holds.
+        noise: rms of its noise by its data sheet [SI unit], None if not stated.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Sensor:
     serial: str = ""
     calibrated: date | None = None
     calibration_months: int = 12
+    noise: float | None = None
 
 
 def require_unique(sensors: Sequence[Sensor]) -> None:
@@ -84,7 +86,7 @@ def require_table(sensors: Sequence[Sensor]) -> None:
     """
     require_unique(sensors)
     forces = sum(len(s.axes) for s in sensors if s.quantity is Quantity.FORCE)
-    moving = sum(len(s.axes) for s in sensors if s.quantity in MOTIONS)
+    moving = sum(len(s.axes) for s in sensors if s.quantity.is_motion)
     if forces != 1 or not moving:
         raise UsageError(
             f"the channel table has {forces} force channels and {moving} channels of a "

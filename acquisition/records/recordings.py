@@ -39,11 +39,18 @@ class Quantity(StrEnum):
     TEMPERATURE = "temperature"
     TACHO = "tacho"
 
+    @property
+    def is_motion(self) -> bool:
+        """Whether it is a response of a structure, of which FRFs and modes are."""
+        return self in _MOTIONS
 
-MOTIONS = (Quantity.ACCELERATION, Quantity.VELOCITY, Quantity.DISPLACEMENT)
-"""Responses of a structure; FRFs and operational modes are of these alone."""
-MECHANICAL = (Quantity.FORCE, *MOTIONS)
-"""Quantities that columns of foreign files are read as."""
+    @classmethod
+    def mechanical(cls) -> "tuple[Quantity, ...]":
+        """Return force and motions: what columns of foreign files are read as."""
+        return (cls.FORCE, *_MOTIONS)
+
+
+_MOTIONS = (Quantity.ACCELERATION, Quantity.VELOCITY, Quantity.DISPLACEMENT)
 
 
 class Verdict(StrEnum):
@@ -175,7 +182,7 @@ def response_rows(recording: Recording) -> tuple[int, ...]:
         ChannelMissing: the recording holds none.
     """
     rows = tuple(
-        i for i, channel in enumerate(recording.channels) if channel.quantity in MOTIONS
+        i for i, channel in enumerate(recording.channels) if channel.quantity.is_motion
     )
     if not rows:
         raise ChannelMissing(
@@ -191,7 +198,7 @@ def common_response(channels: Sequence[Channel]) -> Quantity:
     Raises:
         ChannelMissing: they measure different quantities, or there is none.
     """
-    quantities = {c.quantity for c in channels if c.quantity in MOTIONS}
+    quantities = {c.quantity for c in channels if c.quantity.is_motion}
     if len(quantities) != 1:
         raise ChannelMissing(
             "response channels must measure one and the same quantity, got "

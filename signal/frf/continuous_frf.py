@@ -129,7 +129,8 @@ def _spectra(recording: Recording, rows: Sequence[int], count: int) -> ComplexAr
     blocks = recording.samples.shape[1] // count
     parts = (recording.samples[:, n * count : (n + 1) * count] for n in range(blocks))
     spectra = [np.fft.rfft(part[list(rows)]) for part in parts]
-    return np.asarray(spectra, dtype=complex) / np.sqrt(count)
+    found: ComplexArray = np.asarray(spectra, dtype=complex) / np.sqrt(count)
+    return found
 
 
 def _pair(

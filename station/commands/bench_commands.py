@@ -75,7 +75,7 @@ def record_command(
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Record timed runs of any channels by a plan, or a whole simulated campaign.
+    """Record timed runs by a plan, or a simulated campaign.
 
     Runs of a plan are operating runs, shaker runs, or plain recordings; a session of
     hammer hits is recorded by 'measure'. Of a simulated campaign all hits are judged
@@ -134,6 +134,62 @@ def watch_command(
     from jointbench.station.bench_view.watch_session import run_watch
 
     run_watch(session, once=once, json_target=json)
+
+
+def doctor_command(
+    plan: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="PLAN",
+            help="Plan of 'measure' or 'record' (TOML); the devices alone without one.",
+        ),
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="Instrument: 'ni:', 'ni+grpc://HOST:PORT' or 'sim:plates'; from the "
+            "plan by default.",
+        ),
+    ] = None,
+    noise: Annotated[
+        str,
+        typer.Option(
+            metavar="QUANTITY", help="Duration of the noise, for example '5 s'."
+        ),
+    ] = "10 s",
+    hit: Annotated[
+        str,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Longest time for one hit, for example '30 s'; '0 s' for none.",
+        ),
+    ] = "30 s",
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Examine a bench before the first measurement.
+
+    The command examines driver, devices and sensors against the plan, the noise of
+    each channel against its data sheet, and one hit. Each finding states what to do.
+
+    Examples:
+        jointbench doctor plan.toml --source ni:
+        jointbench doctor --source ni+grpc://192.168.0.7:31763
+        jointbench doctor examples/plates.toml --source 'sim:plates?seed=1'
+    """
+    from jointbench.acquisition.basics.units import parse_value
+    from jointbench.station.doctor.bench_finding import Health
+    from jointbench.station.doctor.run_doctor import run_doctor
+
+    found = run_doctor(
+        plan,
+        source=source,
+        noise_time=parse_value(noise, "time"),
+        hit_time=parse_value(hit, "time"),
+        json_target=json,
+    )
+    return 0 if all(f.health is Health.GOOD for f in found) else EXIT_QUALITY
 
 
 def calibrate_command(

@@ -28,7 +28,7 @@ from pydantic import Field, model_validator
 
 from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.ni.sensors import Sensor, require_unique
-from jointbench.acquisition.records.recordings import MOTIONS, Quantity
+from jointbench.acquisition.records.recordings import Quantity
 from jointbench.station.files.toml_file import StrictTable, read_toml
 from jointbench.station.schemas.plan_model import AcquisitionTable, PlanSensorTable
 from jointbench.station.schemas.positive_quantities import Time, Torque
@@ -67,7 +67,7 @@ class RecordPlanTable(StrictTable):
         if len(set(names)) != len(names):
             raise ValueError("two runs have the same name")
         quantities = [sensor.quantity for sensor in self.sensors]
-        moving = any(quantity in MOTIONS for quantity in quantities)
+        moving = any(quantity.is_motion for quantity in quantities)
         for run in self.runs:
             forces = quantities.count(Quantity.FORCE)
             if run.kind is RunKind.SHAKER and (forces != 1 or not moving):

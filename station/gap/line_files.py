@@ -22,14 +22,9 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import Column, only_roles, parse_columns
 from jointbench.acquisition.formats.tables import load_table
-from jointbench.acquisition.records.recordings import (
-    MECHANICAL,
-    Channel,
-    Quantity,
-    Recording,
-)
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
-_ROLES = tuple(quantity.value for quantity in MECHANICAL)
+_ROLES = tuple(quantity.value for quantity in Quantity.mechanical())
 _OFF_LINE = 1e-3
 """Of the spacing: how far a frequency may be from a multiple of it."""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray
-from jointbench.acquisition.records.recordings import MOTIONS, Channel
+from jointbench.acquisition.records.recordings import Channel
 from jointbench.signal.frf.frf import Frf
 from jointbench.station.measure.plan import Condition
 
@@ -130,7 +130,7 @@ def _compare(one: str, other: str, forth: ComplexArray, back: ComplexArray) -> C
 
 
 def _response_at(channels: tuple[Channel, ...], point: str) -> int | None:
-    responses = [c for c in channels if c.quantity in MOTIONS]
+    responses = [c for c in channels if c.quantity.is_motion]
     rows = [i for i, channel in enumerate(responses) if channel.point == point]
     return rows[0] if len(rows) == 1 else None
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.records.recordings import MOTIONS, Channel, Quantity
+from jointbench.acquisition.records.recordings import Channel, Quantity
 from jointbench.signal.frf.frf import Frf
 from jointbench.station.measure.running_average import mean_coherence
 from jointbench.station.measure.stored_cut import Cut
@@ -60,7 +60,7 @@ def _with_frf(
 ) -> HitAveraged:
     low, high = frf.usable_band or (float(frf.frequency[0]), float(frf.frequency[-1]))
     inside = (frf.frequency >= low) & (frf.frequency <= high)
-    names = [c.name for c in channels if c.quantity in MOTIONS]
+    names = [c.name for c in channels if c.quantity.is_motion]
     curves, coherences = {}, {}
     for row, name in enumerate(names):
         size = 20 * np.log10(np.abs(frf.response[row, 0, inside]) + 1e-12)

@@ -30,7 +30,7 @@ from pydantic import AfterValidator, Field, model_validator
 from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.basics.units import parse_sensitivity, parse_value
 from jointbench.acquisition.ni.sensors import Axis, Sensor
-from jointbench.acquisition.records.recordings import MOTIONS, Quantity
+from jointbench.acquisition.records.recordings import Quantity
 from jointbench.acquisition.serial_lines.instruments import torque_tester
 from jointbench.station.files.toml_file import StrictTable
 from jointbench.station.schemas.positive_quantities import (
@@ -70,6 +70,7 @@ class PlanSensorTable(StrictTable):
     serial: str = ""
     calibrated: date | None = None
     calibration_months: int = Field(default=12, ge=1, le=120)
+    noise: str | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> "PlanSensorTable":
@@ -78,7 +79,7 @@ class PlanSensorTable(StrictTable):
             raise ValueError(
                 "give either physical and sensitivity, or axes with both in each"
             )
-        if self.quantity in MOTIONS and not self.point:
+        if self.quantity.is_motion and not self.point:
             raise ValueError("say at which point it sits, point = '1'")
         return self
 
@@ -114,6 +115,9 @@ class PlanSensorTable(StrictTable):
             serial=self.serial,
             calibrated=self.calibrated,
             calibration_months=self.calibration_months,
+            noise=None
+            if self.noise is None
+            else parse_value(self.noise, self.quantity),
         )
 
     def _excitation(self) -> float | None:

@@ -32,14 +32,9 @@ from jointbench.acquisition.formats.even_steps import (
 from jointbench.acquisition.formats.header_units import hit_columns_stated, units_words
 from jointbench.acquisition.formats.tables import Table, load_table
 from jointbench.acquisition.records.provenance import Step, step
-from jointbench.acquisition.records.recordings import (
-    MECHANICAL,
-    Channel,
-    Quantity,
-    Recording,
-)
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
-_QUANTITIES = tuple(quantity.value for quantity in MECHANICAL)
+_QUANTITIES = tuple(quantity.value for quantity in Quantity.mechanical())
 
 
 def read_recording(

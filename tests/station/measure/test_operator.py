@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.live import Live
 
 from jointbench.acquisition.ni.driver import Chassis
-from jointbench.acquisition.records.recordings import Hit, Verdict
+from jointbench.acquisition.records.recordings import Hit, Quantity, Verdict
 from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
@@ -28,7 +28,7 @@ from jointbench.station.bench_view.terminal_view import TerminalView
 from jointbench.station.bench_view.text_screen import TextScreen
 from jointbench.station.bench_view.watch_session import run_watch
 from jointbench.station.commands.verify_command import run_verify
-from jointbench.station.measure.bench_session import Measured, measure
+from jointbench.station.measure.bench_session import Measured, measure, run_measure
 from jointbench.station.measure.chassis import (
     OpenChassis,
     OperatorOfSimulation,
@@ -350,3 +350,27 @@ def test_a_second_view_in_the_middle_of_a_session_draws_the_same_screen(
         one, other = (session_lines(s, around, Look(80, 24)) for s in (own, late))
         assert [line.plain for line in one] == [line.plain for line in other]
     assert view.state.ended is not None
+
+
+def test_a_temperature_is_recorded_beside_every_hit(tmp_path: Path) -> None:
+    """It is in no FRF and no check; each hit has its samples in the file."""
+    plan = plan_file(tmp_path)
+    air = (
+        '\n[[sensors]]\nname = "air"\nquantity = "temperature"\n'
+        'physical = "cDAQSim1Mod2/ai0"\nsensitivity = "10 mV/degC"\n'
+        'range = "100 degC"\n'
+    )
+    plan.write_text(plan.read_text(encoding="utf-8") + air, encoding="utf-8")
+    measured = run_measure(
+        plan,
+        tmp_path / "s.h5",
+        source="sim:plates?modules=2",
+        overwrite=False,
+        json_target=None,
+    )
+    assert measured.whole
+    assert len(measured.record.checks) == 3
+    for recording in read_session(tmp_path / "s.h5").recordings:
+        row = recording.row(Quantity.TEMPERATURE)
+        for hit in recording.hits:
+            assert recording.samples[row, hit.start : hit.stop].size > 3000
