@@ -197,6 +197,8 @@ def test_samples_recorded_before_a_pause_are_not_passed_on_after_it(
     path = tmp_path / "s.h5"
     with recording(path, speed=8.0) as (recorder, wait):
         wait()
+        while stored(path) <= BLOCK:  # what was read is stored block by block
+            time.sleep(0.02)
         recorder.pause()
         before = recorder.samples
         recorder.resume()
