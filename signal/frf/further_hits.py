@@ -108,7 +108,7 @@ def _forecast(
     power = np.sum(np.abs(rows) ** 2, axis=0)
     reach = max(_LEAST_LINES, round(_WIDTHS * _half_width(power, top)))
     part = slice(max(0, top - reach), top + reach + 1)
-    s = 2j * np.pi * frequency[part]
+    s = np.asarray(2j * np.pi * frequency[part], dtype=np.complex128)
     least = np.finfo(float).tiny + 1e-20 * np.max(np.abs(rows)) ** 2
     weight = 1.0 / np.sqrt(np.maximum(variance[:, part], least))
     pole = complex(-np.pi * (frequency[1] - frequency[0]), s[top - part.start].imag)
