@@ -13,6 +13,7 @@ import typer
 
 from jointbench.station.commands.bench_commands import (
     calibrate_command,
+    doctor_command,
     measure_command,
     record_command,
     simulate_command,
@@ -67,6 +68,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "measure": measure_command,
         "record": record_command,
         "watch": watch_command,
+        "doctor": doctor_command,
         "calibrate": calibrate_command,
         "profile": profile_command,
         "simulate": simulate_command,

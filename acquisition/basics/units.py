@@ -69,6 +69,9 @@ _UNITS = MappingProxyType(
         "angular_rate": {"rad/s": 1.0, "Hz": 2 * math.pi, "rpm": 2 * math.pi / 60},
         "angle": {"rad": 1.0, "deg": math.pi / 180},
         "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "kV": 1e3},
+        "tacho": {"V": 1.0, "mV": 1e-3},
+        "temperature": {"degC": 1.0, "K": 1.0},
+        "strain": {"m/m": 1.0, "mm/m": 1e-3, "um/m": 1e-6},
         "ratio": {"": 1.0, "1": 1.0, "%": 1e-2, "ppm": 1e-6},
     }
 )

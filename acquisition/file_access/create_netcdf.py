@@ -13,6 +13,7 @@ import h5py
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.netcdf_write import write_attributes
 from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.replace_file import replace_file
 
 _CONVENTIONS = "CF-1.11"
 _GROWTH = 2**22  # bytes by which a file in memory grows
@@ -71,7 +72,7 @@ def new_file(
             os.truncate(part, size)  # HDF5 keeps the reserve of `DiskRoom`
         _sync(part)
         _require_free(path, overwrite)
-        part.replace(path)
+        replace_file(part, path)
         _sync(path.parent)
     except OSError as error:
         raise UsageError(
@@ -102,8 +103,10 @@ def _reason(error: OSError) -> str:
 
 def _sync(path: Path) -> None:
     """Flush a file, or the entries of a folder where possible, to the disk."""
+    # Windows flushes only what is open for writing.
+    flags = os.O_RDONLY if path.is_dir() else os.O_RDWR
     try:
-        handle = os.open(path, os.O_RDONLY)
+        handle = os.open(path, flags)
     except OSError:
         if path.is_dir():  # not on Windows
             return

@@ -32,7 +32,7 @@ SKIP = "skip"
 HITS_EXAMPLE = "time:s,force:N,acceleration:m/s^2"
 SURFACE_EXAMPLES = ("x:um,z:um", "x:mm,y:mm,z:um")
 _KINDS = {"time": "time", "x": "length", "y": "length", "z": "length"} | {
-    quantity.value: quantity.value for quantity in Quantity
+    quantity.value: quantity.value for quantity in Quantity.mechanical()
 }
 _SENSITIVITIES = {
     "force": "2.25mV/N",

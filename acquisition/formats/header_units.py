@@ -14,7 +14,7 @@ from jointbench.acquisition.formats.table_cells import split_row
 from jointbench.acquisition.formats.tables import Table
 from jointbench.acquisition.records.recordings import Quantity
 
-_KINDS = ("time", *(quantity.value for quantity in Quantity), "voltage")
+_KINDS = ("time", *(quantity.value for quantity in Quantity.mechanical()), "voltage")
 # ``Force [N]``, ``Force (N)``, ``Force in N``, and ``F / N`` as standards write it.
 _CELL = re.compile(
     r"(?P<name>[^\[(/]*?)\s*"

@@ -36,7 +36,7 @@ from jointbench.acquisition.records.recordings import Channel, Quantity, Recordi
 MOST_VALUES = 100_000_000
 MOST_CHANNELS = 4096
 _VOLTAGE = "voltage"
-QUANTITIES = tuple(quantity.value for quantity in Quantity)
+QUANTITIES = tuple(quantity.value for quantity in Quantity.mechanical())
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +185,9 @@ def _as_stated(
 
 def quantity_of_unit(unit: str) -> Quantity | None:
     """Return the single quantity of a unit."""
-    found = [quantity for quantity in Quantity if is_unit(unit, quantity.value)]
+    found = [
+        quantity for quantity in Quantity.mechanical() if is_unit(unit, quantity.value)
+    ]
     return found[0] if len(found) == 1 else None
 
 

@@ -5,8 +5,9 @@ The same calls are used for a driver on this computer and for a remote device se
 real or simulated; only the channel differs.
 """
 
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import grpc
@@ -22,6 +23,9 @@ from nidaqmx.constants import (
     ForceUnits,
     OverwriteMode,
     ReadRelativeTo,
+    SoundPressureUnits,
+    VelocityIEPESensorSensitivityUnits,
+    VelocityUnits,
 )
 from nidaqmx.errors import DaqError, RpcError
 from nidaqmx.stream_readers import AnalogMultiChannelReader
@@ -50,14 +54,18 @@ from jointbench.acquisition.ni.sensors import (
 from jointbench.acquisition.records.recordings import Quantity
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
+_QUIETEST = 20e-6  # [Pa] at 0 dB
 _STROKE = 5.0  # [s] for a stroke of a simulated bench; it is requested again
 _CONNECTION = 60.0  # [s] for the first answer of a server on a busy computer
 _OPTIONS = (
     ("grpc.max_receive_message_length", -1),
     ("grpc.max_send_message_length", -1),
+    # A server on a busy computer answers late; its buffer holds 20 s meanwhile.
     ("grpc.keepalive_time_ms", 10_000),
-    ("grpc.keepalive_timeout_ms", 5_000),
-    ("grpc.min_reconnect_backoff_ms", 100),
+    ("grpc.keepalive_timeout_ms", 20_000),
+    # In spite of its name the time in which a connection must be made, greetings of the
+    # server included; attempts that are refused are repeated after the other two.
+    ("grpc.min_reconnect_backoff_ms", 20_000),
     ("grpc.initial_reconnect_backoff_ms", 100),
     ("grpc.max_reconnect_backoff_ms", 1_000),
 )
@@ -146,12 +154,14 @@ class Chassis:
             ]
             task = self._new_task(name)
             try:
-                for (sensor, axis), current in zip(axes, currents, strict=True):
+                gains = [
                     _add_channel(task, sensor, axis, current)
+                    for (sensor, axis), current in zip(axes, currents, strict=True)
+                ]
             except Exception:
                 task.close()
                 raise
-            return AnalogTask(task, self.address, name, self._left)
+            return AnalogTask(task, self.address, (name, self._left), gains)
 
     def _new_task(self, name: str) -> Any:
         """Return an empty task, after those left over were closed.
@@ -218,10 +228,16 @@ class AnalogTask:
     """A task that streams; its calls raise this package's errors."""
 
     def __init__(
-        self, task: Any, address: str | None, name: str, left: list[str]
+        self,
+        task: Any,
+        address: str | None,
+        left: tuple[str, list[str]],
+        gains: Sequence[float],
     ) -> None:
         self._task, self._address = task, address
-        self._name, self._left = name, left
+        self._name, self._left = left
+        # Of channels that the driver delivers in volts [SI unit/V].
+        self._gains = np.array(gains)[:, None] if set(gains) != {1.0} else None
         self._reader = AnalogMultiChannelReader(task.in_stream)
         # The shape is set here, which saves a request to the server at every read.
         self._reader.verify_array_shape = False
@@ -291,6 +307,8 @@ class AnalogTask:
         samples = np.empty((self._count, count))
         with named_errors(self._address):
             self._reader.read_many_sample(samples, count, timeout)
+        if self._gains is not None:
+            samples *= self._gains
         return samples
 
     def done(self) -> bool:
@@ -326,12 +344,34 @@ class AnalogTask:
             count: samples to read.
             timeout: [s].
         """
+        with self._relative(ReadRelativeTo.FIRST_SAMPLE, sample):
+            return self.read(count, timeout=timeout)
+
+    def read_back(
+        self, back: int, count: int, *, timeout: float
+    ) -> tuple[int, FloatArray]:
+        """Read from a sample counted back from the newest, and continue from there.
+
+        Args:
+            back: number of the newest samples before which nothing is read.
+            count: samples to read.
+            timeout: [s].
+
+        Returns:
+            Index of the first sample read, and the samples, shape (n_channels, count).
+        """
+        with self._relative(ReadRelativeTo.MOST_RECENT_SAMPLE, -back):
+            samples = self.read(count, timeout=timeout)
+            return self.position() - count, samples
+
+    @contextmanager
+    def _relative(self, origin: ReadRelativeTo, offset: int) -> Iterator[None]:
+        """Read from another place; what follows continues from there."""
         stream = self._task.in_stream
         with named_errors(self._address):
-            stream.relative_to = ReadRelativeTo.FIRST_SAMPLE
-            stream.offset = sample
+            stream.relative_to, stream.offset = origin, offset
         try:
-            return self.read(count, timeout=timeout)
+            yield
         finally:
             with named_errors(self._address):
                 stream.relative_to = ReadRelativeTo.CURRENT_READ_POSITION
@@ -371,38 +411,71 @@ def _device(axis: Axis) -> str:
     return axis.physical.partition("/")[0]
 
 
-def _add_channel(task: Any, sensor: Sensor, axis: Axis, current: float) -> None:
-    name = channel_name(sensor, axis)
-    excitation = {
-        "current_excit_source": ExcitationSource.INTERNAL
-        if current
-        else ExcitationSource.NONE,
+def _add_channel(task: Any, sensor: Sensor, axis: Axis, current: float) -> float:
+    """Add a channel; return the SI units of one unit that the driver delivers."""
+    name, source = channel_name(sensor, axis), ExcitationSource
+    supply = {
+        "current_excit_source": source.INTERNAL if current else source.NONE,
         "current_excit_val": current,
     }
     limits = {"min_val": -sensor.range, "max_val": sensor.range}
+    channels, millivolts = task.ai_channels, 1e3 * axis.sensitivity
+    gain = 1.0
     if sensor.quantity is Quantity.FORCE:
-        channel = task.ai_channels.add_ai_force_iepe_chan(
+        channel = channels.add_ai_force_iepe_chan(
             axis.physical,
             name,
             units=ForceUnits.NEWTONS,
-            sensitivity=1e3 * axis.sensitivity,
+            sensitivity=millivolts,
             sensitivity_units=ForceIEPESensorSensitivityUnits.MILLIVOLTS_PER_NEWTON,
             **limits,
-            **excitation,
+            **supply,
         )
     elif sensor.quantity is Quantity.ACCELERATION:
-        channel = task.ai_channels.add_ai_accel_chan(
+        channel = channels.add_ai_accel_chan(
             axis.physical,
             name,
             units=AccelUnits.METERS_PER_SECOND_SQUARED,
-            sensitivity=1e3 * axis.sensitivity * STANDARD_GRAVITY,
+            sensitivity=millivolts * STANDARD_GRAVITY,
             sensitivity_units=AccelSensitivityUnits.MILLIVOLTS_PER_G,
             **limits,
-            **excitation,
+            **supply,
+        )
+    elif current and sensor.quantity is Quantity.VELOCITY:
+        unit = VelocityIEPESensorSensitivityUnits
+        channel = channels.add_ai_velocity_iepe_chan(
+            axis.physical,
+            name,
+            units=VelocityUnits.METERS_PER_SECOND,
+            sensitivity=1e-3 * millivolts,
+            sensitivity_units=unit.MILLIVOLTS_PER_MILLIMETER_PER_SECOND,
+            **limits,
+            **supply,
+        )
+    elif current and sensor.quantity is Quantity.PRESSURE:
+        channel = channels.add_ai_microphone_chan(
+            axis.physical,
+            name,
+            units=SoundPressureUnits.PA,
+            mic_sensitivity=millivolts,
+            max_snd_press_level=_sound_level(sensor.range),
+            **supply,
         )
     else:
-        raise UsageError(
-            f"channel {name!r} measures {sensor.quantity.value}; the NI driver takes "
-            "hammers (force) and accelerometers (acceleration)"
+        # Everything else, and what has a supply of its own, is a voltage.
+        if current:
+            raise UsageError(
+                f"channel {name!r} measures {sensor.quantity.value}, for which the "
+                "driver has no current; write iepe = '0 mA', or leave it out"
+            )
+        volts, gain = sensor.range * axis.sensitivity, 1 / axis.sensitivity
+        channel = channels.add_ai_voltage_chan(
+            axis.physical, name, min_val=-volts, max_val=volts
         )
     channel.ai_coupling = Coupling[sensor.coupling]
+    return gain
+
+
+def _sound_level(pressure: float) -> float:
+    """Return the level of a sine of an amplitude [Pa] in dB above 20 uPa."""
+    return 20 * math.log10(pressure / math.sqrt(2) / _QUIETEST)

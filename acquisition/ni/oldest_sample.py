@@ -1,27 +1,28 @@
 # SPDX-License-Identifier: MIT
 """Read the oldest sample still in the driver's buffer after an overrun."""
 
-from collections.abc import Callable
-
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.ni.driver import AnalogTask
 from jointbench.acquisition.ni.driver_answers import Overrun, Stopped
 
-_ATTEMPTS = 12  # the margin doubles each time, up to any buffer size
+_LEAST_ROOM = 2**-12  # of the buffer: 5 ms of 20 s; it doubles at each attempt
 
 
 def read_oldest(
-    task: AnalogTask, position: int, read: Callable[[int, int], FloatArray]
+    task: AnalogTask, position: int, most: int, *, timeout: float
 ) -> tuple[int, FloatArray]:
-    """Find the oldest readable sample, and read from there on.
+    """Read from the oldest sample on that is still in the buffer.
 
-    A running device overwrites more between the query of its counter and the read: each
-    attempt leaves twice the margin needed by the last one.
+    The driver itself counts back from its newest sample, so that the time between a
+    question for its counter and the read costs no sample. A running device may
+    overwrite the oldest samples during the read: each attempt leaves twice the room of
+    the last one.
 
     Args:
         task: that overran.
         position: next sample to read.
-        read: reads from a sample on, given the number of unread samples.
+        most: samples to read at most.
+        timeout: [s].
 
     Returns:
         Index of the first sample read, and the samples, shape (n_channels, n).
@@ -30,12 +31,12 @@ def read_oldest(
         Stopped: the whole buffer was overwritten, or its counter is implausible.
         ConnectionLost: the device is unreachable.
     """
-    kept, newest, room = task.buffer(), task.acquired(), 0
-    for _ in range(_ATTEMPTS):
-        oldest = min(max(position, newest - kept) + room, newest)
+    kept, waiting, room = task.buffer(), task.acquired() - position, 0
+    words = f"the driver counts {waiting} unread samples after an overrun"
+    while (back := min(kept - room, waiting)) > 0:
         try:
-            return oldest, read(oldest, newest - oldest)
+            return task.read_back(back, min(most, back), timeout=timeout)
         except Overrun as error:
-            words, before, newest = str(error), newest, task.acquired()
-            room = max(2 * room, 2 * (newest - before), kept // 2**_ATTEMPTS, 1)
+            words = str(error)
+            room = max(2 * room, round(_LEAST_ROOM * kept), 1)
     raise Stopped(f"{words}; no sample of the buffer could be read")

@@ -43,6 +43,7 @@ class Sensor:
         serial: serial number, empty if not stated.
         calibrated: day of the last calibration, None if not stated.
         calibration_months: how long a calibration holds.
+        noise: rms of its noise by its data sheet [SI unit], None if not stated.
     """
 
     name: str
@@ -56,14 +57,14 @@ class Sensor:
     serial: str = ""
     calibrated: date | None = None
     calibration_months: int = 12
+    noise: float | None = None
 
 
-def require_table(sensors: Sequence[Sensor]) -> None:
-    """Check the consistency of a table.
+def require_unique(sensors: Sequence[Sensor]) -> None:
+    """Check that no name and no input of a table is used twice.
 
     Raises:
-        UsageError: there is not exactly one force channel, no response, or a name or
-            an input is used twice.
+        UsageError: one is.
     """
     names = [channel.name for channel in table_channels(sensors)]
     inputs = [axis.physical for sensor in sensors for axis in sensor.axes]
@@ -74,12 +75,22 @@ def require_table(sensors: Sequence[Sensor]) -> None:
                 f"{what} {twice[0]!r} is used twice in the channel table; each sensor "
                 "and axis needs its own"
             )
+
+
+def require_table(sensors: Sequence[Sensor]) -> None:
+    """Check that a table fits a hammer session.
+
+    Raises:
+        UsageError: there is not exactly one force channel, no response, or a name or
+            an input is used twice.
+    """
+    require_unique(sensors)
     forces = sum(len(s.axes) for s in sensors if s.quantity is Quantity.FORCE)
-    if forces != 1 or len(names) < 2:
+    moving = sum(len(s.axes) for s in sensors if s.quantity.is_motion)
+    if forces != 1 or not moving:
         raise UsageError(
-            f"the channel table has {forces} force channels and "
-            f"{len(names) - forces} others; a hammer session needs one hammer and at "
-            "least one response"
+            f"the channel table has {forces} force channels and {moving} channels of a "
+            "motion; a hammer session needs one hammer and at least one response"
         )
 
 

@@ -3,7 +3,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import InstrumentError
@@ -37,7 +37,7 @@ __all__ = [
 
 _RETRY = 0.2  # [s] between attempts to reconnect
 _GRACE = 5.0  # [s] extra time for samples to arrive
-_MOST_VALUES = 2**21  # of all channels in one read: 16 MB
+_MOST_VALUES = 2**19  # of all channels in one read: 4 MB
 
 
 @dataclass(slots=True)
@@ -50,6 +50,7 @@ class NiStream:
         settings: rate, block, time limits.
         counters: kept up to date while the stream is read.
         sample_rate: actual rate of the device [Hz]; 0 before `start`.
+        segment: number of the uninterrupted task that is read.
     """
 
     chassis: Chassis
@@ -57,8 +58,8 @@ class NiStream:
     settings: StreamSettings
     counters: Counters = field(default_factory=Counters)
     sample_rate: float = 0.0
+    segment: int = 0
     _task: AnalogTask | None = None
-    _segment: int = 0
     _position: int = 0
     _made_before: int = 0
     _trigger: HardwareTrigger | None = None
@@ -67,6 +68,7 @@ class NiStream:
     _progress: float = 0.0
     _asked: float = 0.0
     _late_reader: bool = True
+    _read_to: int = 0
 
     def start(self) -> None:
         """Create the task and start its clock.
@@ -74,34 +76,44 @@ class NiStream:
         Raises:
             InstrumentError: a channel or the rate is refused, or there is no answer.
         """
-        task = self.chassis.task(f"jointbench-{self._segment}", self.sensors)
+        task = self.chassis.task(f"jointbench-{self.segment}", self.sensors)
         try:
             self.sample_rate = _begin(task, self.settings, self._trigger)
         except InstrumentError:
             task.close()
             raise
-        self._task, self._position, self._moved, self._made = task, 0, False, 0
+        self._task, self._moved, self._made = task, False, 0
+        self._position = self._read_to = 0
         self._made_before = self.counters.acquired
 
-    def trigger_by(self, trigger: HardwareTrigger) -> None:
+    def trigger_by(self, trigger: HardwareTrigger) -> StreamGap | None:
         """Detect hits on the device from now on; each is a separate segment.
+
+        Returns:
+            As `pause`.
 
         Raises:
             InstrumentError: it cannot, or does not return.
         """
         if trigger == self._trigger:
-            return
-        self.pause()
+            return None
+        gap = self.pause()
         self._trigger = trigger
         self.resume()
+        return gap
 
-    def pause(self) -> None:
-        """Stop on purpose; unread samples are discarded."""
-        self._count_or_none()
+    def pause(self) -> StreamGap | None:
+        """Stop on purpose; unread samples are discarded.
+
+        Returns:
+            The gap of those that were overwritten before.
+        """
+        gap = self.settle()
         self.counters.unwanted += self.counters.unread
         self.counters.unread = 0
         self.close()
-        self._segment += 1
+        self.segment += 1
+        return gap
 
     def resume(self) -> None:
         """Start as soon as the device is available.
@@ -143,9 +155,12 @@ class NiStream:
             except Stopped as error:
                 yield from self._rearm(str(error))
             except ConnectionLost as error:
+                # What the device is known to have acquired is out of reach.
+                lost = self.counters.acquired - self.passed
                 yield StreamGap(
-                    "lost", self._segment, self._position, 0, 0.0, str(error)
+                    "lost", self.segment, self._position, lost, 0.0, str(error)
                 )
+                self._position += lost
                 yield self._reconnect(str(error))
 
     def open_loops(self) -> tuple[str, ...]:
@@ -155,6 +170,11 @@ class NiStream:
         except InstrumentError:
             return ()
 
+    @property
+    def passed(self) -> int:
+        """Samples acquired up to the next one to read, over all segments."""
+        return self._made_before + self._position
+
     def count(self) -> None:
         """Update the counters from the device.
 
@@ -163,20 +183,49 @@ class NiStream:
         """
         if self._task is not None and self._trigger is None:
             acquired = max(self._task.acquired(), self._position)
-            self.counters.acquired = self._made_before + acquired
+            self._seen(acquired)
             self.counters.unread = acquired - self._position
+
+    def settle(self, *, ask: bool = True) -> StreamGap | None:
+        """Count, and return the gap of what was overwritten since the last read.
+
+        Args:
+            ask: for the device's counter. Otherwise, and without an answer, unread is
+                what the device was known to have acquired.
+        """
+        if self._task is None or self._trigger is not None:
+            return None
+        self.counters.unread = self.counters.acquired - self.passed
+        with suppress(InstrumentError):
+            if ask:
+                self.count()
+            return self._overwritten(self._task.buffer())
+        return None
+
+    def _overwritten(self, buffer: int) -> StreamGap | None:
+        unread = self.counters.unread
+        lost = unread - (self._read_to - self._position) - buffer
+        if lost <= 0:
+            return None
+        self.counters.unread = unread - lost
+        words = "overwritten in the buffer before the stream was stopped"
+        return replace(self._gap("overrun", lost, words), first=self._read_to)
+
+    def _gap(self, kind: str, lost: int, words: str) -> StreamGap:
+        """Return the gap of samples that are lost from the next one on."""
+        seconds = lost / self.sample_rate
+        return StreamGap(kind, self.segment, self._position, lost, seconds, words)
+
+    def _seen(self, acquired: int) -> None:
+        """Note the device's counter of this segment."""
+        made = self._made_before + acquired
+        self.counters.acquired = max(self.counters.acquired, made)
 
     def close(self) -> None:
         """Stop the task, if it still exists."""
         if self._task is not None:
             self._task.close()
             self._task = None
-
-    def _count_or_none(self) -> None:
-        """Count; without an answer the number of unread samples is unknown."""
-        self.counters.unread = 0
-        with suppress(InstrumentError):
-            self.count()
 
     def _next(self) -> Iterator[Block | StreamGap | Waiting]:
         try:
@@ -202,12 +251,6 @@ class NiStream:
             samples = self._task.read(count, timeout=self._timeout(count))
         yield from self._blocks(samples)
 
-    def _read_from(self, first: int, waiting: int) -> FloatArray:
-        """Read all unread samples from one on, at least one block."""
-        assert self._task is not None
-        count = max(self.settings.block, self._at_once(waiting))
-        return self._task.resume_at(first, count, timeout=self._timeout(count))
-
     def _waiting(self, task: AnalogTask) -> int:
         """Return the number of samples to read at once; 0 for at most one block.
 
@@ -216,7 +259,9 @@ class NiStream:
         now, block = self.settings.now(), self.settings.block
         if not self._late_reader and now - self._asked < block / self.sample_rate:
             return 0
-        waiting = self._at_once(task.available())
+        available = task.available()
+        self._seen(self._position + available)
+        waiting = self._at_once(available)
         self._asked, self._late_reader = now, waiting > block
         return waiting
 
@@ -230,10 +275,11 @@ class NiStream:
 
     def _blocks(self, samples: FloatArray) -> Iterator[Block]:
         """Yield the samples read; the caller may pause the stream meanwhile."""
-        segment, size = self._segment, self.settings.block
+        segment, size = self.segment, self.settings.block
+        self._read_to = self._position + samples.shape[1]
         for first in range(0, samples.shape[1], size):
             yield self._took(samples[:, first : first + size])
-            if self._segment != segment:
+            if self.segment != segment:
                 return
 
     def _read_triggered(
@@ -246,34 +292,33 @@ class NiStream:
         block = self._took(task.read(trigger.samples, timeout=_GRACE))
         # The next block is armed before a hit is requested.
         self.close()
-        self._segment += 1
+        self.segment += 1
         self.resume()
         return block
 
     def _took(self, samples: FloatArray) -> Block:
         # Counted before it is yielded: the caller may stop the stream.
-        block = Block(samples, self._segment, self._position)
+        block = Block(samples, self.segment, self._position)
         self._position += samples.shape[1]
         self._progress = self.settings.now()
         self.counters.delivered += samples.shape[1]
-        made = self._made_before + self._position
-        self.counters.acquired = max(self.counters.acquired, made)
+        self._seen(self._position)
         return block
 
     def _overrun(self, words: str) -> Iterator[Block | StreamGap]:
         """Continue at the oldest sample in the buffer; yield the gap before it."""
         assert self._task is not None
-        resume, samples = read_oldest(self._task, self._position, self._read_from)
-        lost, first = resume - self._position, self._position
-        gap = StreamGap(
-            "overrun", self._segment, first, lost, lost / self.sample_rate, words
+        most = self._at_once(self._task.buffer())
+        resume, samples = read_oldest(
+            self._task, self._position, most, timeout=self._timeout(most)
         )
+        gap = self._gap("overrun", resume - self._position, words)
         self._position, self._late_reader = resume, True
-        made = self._made_before + resume
-        self.counters.acquired = max(self.counters.acquired, made)
-        segment = self._segment
+        self._read_to = resume + samples.shape[1]
+        self._seen(self._read_to)
+        segment = self.segment
         yield gap
-        if self._segment == segment:
+        if self.segment == segment:
             yield from self._blocks(samples)
 
     def _late(self, words: str) -> Waiting:
@@ -310,47 +355,54 @@ class NiStream:
                 f"{words}; the device made no sample for {settings.patience:g} s, what "
                 "was recorded is safe: lower the rate, or free the computer"
             )
-        segment = self._segment
+        segment = self.segment
         yield from self._leftover()
-        if self._segment != segment:
+        if self.segment != segment:
             return
-        self._count_or_none()
+        self.counters.unread = self.counters.acquired - self.passed
+        with suppress(InstrumentError):
+            self.count()
         lost, first = self.counters.unread, self._position
         self.counters.unread = 0
         self.close()
-        self._segment += 1
+        self.segment += 1
         if first == 0:
             settings.sleep(_RETRY)
         self.resume()
         away = settings.now() - since + lost / self.sample_rate
         yield StreamGap("rearmed", segment, first, lost, away, words)
 
-    def _leftover(self) -> Iterator[Block]:
-        """Yield the remaining samples of a stopped task."""
-        segment = self._segment
-        while self._segment == segment:
-            samples = self._still_there()
-            if samples is None:
+    def _leftover(self) -> Iterator[Block | StreamGap]:
+        """Yield the remaining samples of a stopped task, and what was overwritten."""
+        segment, before = self.segment, -1
+        while self.segment == segment and self.passed > before:
+            before = self.passed
+            try:
+                yield from self._still_there()
+            except InstrumentError:
                 return
-            yield from self._blocks(samples)
 
-    def _still_there(self) -> FloatArray | None:
-        with suppress(InstrumentError):
-            if self._task is not None and self._trigger is None:
-                waiting = self._at_once(self._task.available())
-                if waiting:
-                    return self._task.read(waiting, timeout=0.0)
-        return None
+    def _still_there(self) -> Iterator[Block | StreamGap]:
+        if self._task is None or self._trigger is not None:
+            return
+        waiting = self._at_once(self._task.available())
+        try:
+            samples = self._task.read(waiting, timeout=0.0) if waiting else None
+        except Overrun as error:
+            yield from self._overrun(str(error))
+        else:
+            if samples is not None:
+                yield from self._blocks(samples)
 
     def _reconnect(self, words: str) -> StreamGap:
         since, first = self.settings.now(), self._position
         self.close()
-        self._segment += 1
+        self.segment += 1
         # The device has run with this table: a refusal now may be temporary after
         # switching on.
         self._come_back((InstrumentError,))
         away = self.settings.now() - since
-        return StreamGap("back", self._segment, first, 0, away, words)
+        return StreamGap("back", self.segment, first, 0, away, words)
 
 
 def _begin(

@@ -99,6 +99,9 @@ class StreamSettings:
 class Counters:
     """Acquired and read samples, over all segments.
 
+    Every sample that was acquired is delivered, unread, unwanted, or lost, and each
+    lost one is in the `samples` of a `StreamGap`.
+
     Attributes:
         acquired: samples per channel acquired, by the counter of the device.
         unread: of those, in the buffer when the counter was read, or read and not yet

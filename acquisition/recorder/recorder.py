@@ -8,20 +8,18 @@ the program dies, it closes and finishes the file.
 import signal
 import time
 from collections import deque
-from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any
 
 from jointbench.acquisition.basics.errors import InstrumentError, JointbenchError
-from jointbench.acquisition.ni.driver import Chassis
-from jointbench.acquisition.ni.stream import Block, NiStream, StreamGap, Waiting
+from jointbench.acquisition.ni.stream import StreamGap
 from jointbench.acquisition.recorder import replies
 from jointbench.acquisition.recorder.news import NewsBox
 from jointbench.acquisition.recorder.replies import Reply
 from jointbench.acquisition.recorder.requests import (
     Ask,
+    Change,
     CreateFile,
     Log,
     Request,
@@ -29,10 +27,11 @@ from jointbench.acquisition.recorder.requests import (
     Stop,
     TriggerBy,
 )
+from jointbench.acquisition.recorder.stored_stream import StoredStream
 from jointbench.acquisition.session_file.finish import finish_live
-from jointbench.acquisition.session_file.live_read import LiveSpan
-from jointbench.acquisition.session_file.live_write import LiveSession
 
+_REST = 5.0
+"""Time in which the rest of the device's buffer is stored at the end [s]."""
 _AT_ONCE = (Ask.NEXT, Ask.OPEN_LOOPS)
 """Served, as log entries are, while the stream waits for a lost device."""
 
@@ -63,38 +62,35 @@ class Recorder:
     def __init__(self, link: Connection, setup: Setup) -> None:
         """Prepare a recording; nothing is opened yet."""
         self._link, self._setup = link, setup
-        self._live: LiveSession | None = None
+        self._file: CreateFile | None = None
         self._news = NewsBox()
         self._asked = self._terminated = False
         self._failure: Exception | None = None
         self._later: deque[Request] = deque()
         self._stop: Stop | None = None
-        self._paused = False
+        self._paused = self._over = False
 
     def run(self) -> None:
         """Open the device, record, close."""
         signal.signal(signal.SIGTERM, self._terminate)
-        chassis = Chassis(self._setup.address)
         try:
-            settings = replace(self._setup.settings, sleep=self._sleep)
-            self._stream = NiStream(chassis, self._setup.sensors, settings)
-            self._in_step = not chassis.has_clock()
-            self._stream.start()
+            self._stream = StoredStream(self._setup, self._sleep)
         except JointbenchError as error:
-            chassis.close()
             self._send(replies.Failed(error))
             return
         try:
-            self._send(replies.Ready(self._stream.sample_rate, self._in_step))
+            self._send(self._ready())
             with suppress(_Ended):
                 self._record()
             self._end()
         finally:
             self._stream.close()
-            chassis.close()
 
     def _terminate(self, number: int, frame: object) -> None:
         self._terminated = True
+
+    def _ready(self) -> replies.Ready:
+        return replies.Ready(self._stream.sample_rate, self._stream.in_step)
 
     def _record(self) -> None:
         """Serve and read in turn.
@@ -102,14 +98,16 @@ class Recorder:
         Raises:
             _Ended: the measuring program wants no more, or died.
         """
-        items = self._stream.items()
         while True:
             self._serve_all()
-            try:
-                self._take(next(items))
-            except (JointbenchError, OSError) as error:
-                self._failure = error
+            self._take()
             self._report()
+
+    def _take(self) -> None:
+        try:
+            self._news.add(self._stream.take())
+        except (JointbenchError, OSError) as error:
+            self._failure = error
 
     def _serve_all(self) -> None:
         """Serve what was requested; wait where nothing may be read without a request.
@@ -121,17 +119,18 @@ class Recorder:
             self._serve(self._later.popleft() if self._later else self._receive())
 
     def _must_wait(self) -> bool:
-        if self._live is None or self._paused or self._failure or self._terminated:
+        if self._file is None or self._paused or self._failure or self._terminated:
             return True
-        return self._in_step and not self._asked
+        return self._stream.complete or (self._stream.in_step and not self._asked)
 
     def _receive(self) -> Request:
         try:
             request: Request = self._link.recv()
         except (EOFError, OSError):
+            self._over = True
             raise _Ended from None
         if isinstance(request, Stop):
-            self._stop = request
+            self._stop, self._over = request, True
             raise _Ended
         return request
 
@@ -141,6 +140,8 @@ class Recorder:
         Raises:
             _Ended: see `_record`.
         """
+        if self._over:
+            raise _Ended
         if self._terminated:
             self._report()
         until = time.monotonic() + seconds
@@ -158,102 +159,90 @@ class Recorder:
             self._report()
         elif isinstance(request, Log):
             with suppress(InstrumentError):  # reported at the next block
-                self._log(request.entry)
+                self._stream.log(request.entry)
         else:
             try:
-                self._send(replies.Done(self._carry_out(request)))
+                self._send(self._carry_out(request))
             except JointbenchError as error:
                 self._send(replies.Failed(error))
 
-    def _carry_out(self, request: Request) -> object:
+    def _carry_out(self, request: Request) -> Reply:
         stream = self._stream
         if isinstance(request, CreateFile):
-            self._create(request)
-            return None
+            stream.create(request)
+            self._file = request
+            return replies.Done()
         if request is Ask.OPEN_LOOPS:
-            return stream.open_loops()
+            return replies.Done(stream.open_loops())
         if request is Ask.RESUME:
             stream.resume()
             self._paused = False
-            return None
+            return replies.Done()
+        if isinstance(request, Change):
+            self._note(stream.change(request.setup))
+            self._paused = False
+            return self._ready()
         if isinstance(request, TriggerBy):
-            stream.trigger_by(request.trigger)
+            self._note(stream.trigger_by(request.trigger))
         else:
             self._paused = True
-            stream.pause()
-        return 0 if self._live is None else self._live.samples
+            self._note(stream.pause())
+        return replies.Done(stream.stored)
 
-    def _create(self, new: CreateFile) -> None:
-        self._live = LiveSession(
-            new.path,
-            new.meta,
-            channels=sum(len(sensor.axes) for sensor in self._setup.sensors),
-            block=self._setup.settings.block,
-        )
-
-    def _take(self, item: Block | StreamGap | Waiting) -> None:
-        """Store an item; it is news once it is in the file."""
-        assert self._live is not None
-        if isinstance(item, Block):
-            stored, count = self._live.samples, item.samples.shape[1]
-            self._live.append(item.samples, segment=item.segment, first=item.first)
-            self._live.written()
-            self._news.add(LiveSpan(item.segment, item.first, stored, count))
-            return
-        if isinstance(item, StreamGap):
-            self._log(gap_entry(item))
-        self._news.add(item)
+    def _note(self, gap: StreamGap | None) -> None:
+        if gap is not None:
+            self._news.add(gap)
 
     def _report(self) -> None:
         """Answer the measuring program, if it asked and there is something to say."""
         if not self._asked:
             return
-        if self._news or self._terminated:
+        complete = self._stream.complete
+        if self._news or self._terminated or complete:
             self._asked = False
-            counters = replace(self._stream.counters)
-            news = replies.News(self._news.take(), counters, self._terminated)
-            self._send(news)
+            counters = self._stream.counters
+            self._send(
+                replies.News(self._news.take(), counters, self._terminated, complete)
+            )
         elif self._failure is not None:
             self._asked = False
             self._send(replies.Failed(self._failure))
 
-    def _log(self, entry: Mapping[str, object]) -> None:
-        if self._live is not None:
-            self._live.log(entry)
-
     def _end(self) -> None:
-        """Close the books and the file; finish it where the program died."""
+        """Store the rest, close the account and the file; finish it in a dead end."""
         failure: Exception | None = None
-        with suppress(InstrumentError):
-            self._stream.count()
+        self._take_rest()
+        self._note(self._stream.settle())
         try:
             self._close_file(interrupted=self._stop is None or self._stop.interrupted)
         except JointbenchError as error:
             failure = error
         if self._stop is not None:
-            self._send(replies.Closed(self._stream.counters, failure))
-        elif self._live is not None:
+            items = self._news.take()
+            gaps = tuple(item for item in items if isinstance(item, StreamGap))
+            self._send(replies.Closed(self._stream.counters, gaps, failure))
+        elif self._file is not None and self._file.finish:
             with suppress(JointbenchError):
-                finish_live(self._live.path, self._live.path, overwrite=True)
+                finish_live(self._file.path, self._file.path, overwrite=True)
+
+    def _take_rest(self) -> None:
+        """Store what the device had made when the end was requested."""
+        until = time.monotonic() + _REST
+        with suppress(_Ended):
+            while not self._must_wait() and self._stream.lags():
+                if time.monotonic() > until:
+                    return
+                self._take()
 
     def _close_file(self, *, interrupted: bool) -> None:
-        live, counters = self._live, self._stream.counters
+        live = self._stream.live
         if live is None:
             return
         end: dict[str, Any] = {"kind": "end", "interrupted": interrupted}
         if self._stop is None:
             end["reason"] = "the measuring program ended without a message"
         try:
-            live.log(
-                {
-                    "kind": "continuity",
-                    "acquired": counters.acquired,
-                    "unread": counters.unread,
-                    "unwanted": counters.unwanted,
-                    "stored_samples": live.samples,
-                    "lost": counters.lost,
-                }
-            )
+            self._stream.log_account()
             live.log(end)
         finally:
             live.close()
@@ -268,16 +257,3 @@ class Recorder:
             self._link.send(reply)
         except OSError:
             raise _Ended from None
-
-
-def gap_entry(gap: StreamGap) -> dict[str, object]:
-    """Return the log entry of missing samples."""
-    return {
-        "kind": "gap",
-        "what": gap.kind,
-        "segment": gap.segment,
-        "first_sample": gap.first,
-        "samples": gap.samples,
-        "seconds": round(gap.seconds, 3),
-        "words": gap.words,
-    }

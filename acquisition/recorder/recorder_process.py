@@ -14,7 +14,11 @@ from contextlib import contextmanager, suppress
 from multiprocessing.context import BaseContext
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.ni.stream_records import (
     Block,
@@ -35,6 +39,7 @@ from jointbench.acquisition.recorder.replies import (
 )
 from jointbench.acquisition.recorder.requests import (
     Ask,
+    Change,
     CreateFile,
     Log,
     Request,
@@ -56,8 +61,11 @@ class RecorderProcess:
         setup: what is streamed.
         sample_rate: actual rate of the device [Hz].
         counters: of the stream, as reported last.
+        gaps: all that were reported, passed on or not; once the recording is stopped,
+            their samples are those that `counters` calls lost.
         samples: stored samples per channel that were passed on, or skipped, so far.
         interrupted: whether the recording process received a termination signal.
+        complete: whether all samples that the setup wants are stored.
     """
 
     def __init__(
@@ -73,7 +81,9 @@ class RecorderProcess:
             InstrumentError: the device refuses, or does not answer.
         """
         self.setup, self._given_up = setup, given_up
-        self.counters, self.samples, self.interrupted = Counters(), 0, False
+        self.counters, self.samples = Counters(), 0
+        self.interrupted = self.complete = False
+        self.gaps: list[StreamGap] = []
         self._blocks: StoredBlocks | None = None
         self._link, far = multiprocessing.Pipe()
         context = _context()
@@ -110,35 +120,76 @@ class RecorderProcess:
         """Number of the process in the system."""
         return int(self._process.pid)
 
-    def begin(self, path: Path, meta: Mapping[str, object]) -> None:
+    def begin(
+        self, path: Path, meta: Mapping[str, object], *, finish: bool = True
+    ) -> None:
         """Create the session file; from now on all samples are stored.
 
         Args:
             path: of a new file.
             meta: data known before the first sample, as JSON types.
+            finish: whether the file becomes a finished session where this program dies;
+                otherwise it remains a recording, to be recovered.
 
         Raises:
             UsageError: the file is there, or cannot be written.
             InstrumentError: it cannot be read back.
         """
-        self._ask(CreateFile(path, meta))
+        self._ask(CreateFile(path, meta, finish))
         self._blocks = StoredBlocks(path, self.setup.settings.block)
 
     def items(self) -> Iterator[Block | StreamGap | Waiting]:
         """Yield what was recorded, in its order, and at times that nothing was.
 
+        It ends once the recording is complete or interrupted.
+
         Raises:
             InstrumentError: the device or the disk refuses, or the process died.
         """
-        while not self.interrupted:
+        for item in self._news():
+            yield from self._passed(item)
+
+    def follow(self) -> Iterator[int]:
+        """Yield at times how many samples are stored; none of them is read back.
+
+        It ends once the recording is complete or interrupted.
+
+        Raises:
+            InstrumentError: the device or the disk refuses, or the process died.
+        """
+        for item in self._news():
+            if isinstance(item, LiveSpan):
+                self.samples = item.past
+            yield self.samples
+
+    def change(self, setup: Setup) -> None:
+        """Stream something else into the same file.
+
+        Args:
+            setup: of as many channels, at the same rate.
+
+        Raises:
+            InstrumentError: the device refuses, or does not answer.
+        """
+        self._send(Change(setup))
+        ready = self._reply()
+        assert isinstance(ready, Ready)
+        self.setup, self.sample_rate, self.complete = setup, ready.sample_rate, False
+
+    def _news(self) -> Iterator[Item]:
+        while not (self.interrupted or self.complete):
             self._send(Ask.NEXT)
             while not self._link.poll(_IDLE):
                 yield Waiting(0)
             news = self._reply()
             assert isinstance(news, News)
-            self.counters, self.interrupted = news.counters, news.interrupted
-            for item in news.items:
-                yield from self._passed(item)
+            self._enter(news)
+            yield from news.items
+
+    def _enter(self, news: News) -> None:
+        self.counters, self.interrupted = news.counters, news.interrupted
+        self.complete = news.complete
+        self.gaps += [item for item in news.items if isinstance(item, StreamGap)]
 
     def log(self, entry: Mapping[str, object]) -> None:
         """Add an entry to the log of the file.
@@ -151,6 +202,28 @@ class RecorderProcess:
         """
         dated = {**entry, "stored": self.samples, "time": round(time.time(), 3)}
         self._send(Log(dated))
+
+    def new_entries(self) -> tuple[dict[str, Any], ...]:
+        """Return the entries of the log that reached the file since the last call.
+
+        Raises:
+            InstrumentError: the disk refuses.
+        """
+        return () if self._blocks is None else self._blocks.entries()
+
+    def read_back(self, start: int, stop: int) -> FloatArray:
+        """Return stored samples again, shape (n_channels, stop - start).
+
+        Args:
+            start: index of the first of them among those stored.
+            stop: index one past the last one.
+
+        Raises:
+            InstrumentError: the disk refuses.
+        """
+        assert self._blocks is not None, "begin() comes first"
+        parts = self._blocks.read(LiveSpan(0, start, start, stop - start))
+        return np.hstack([part.samples for part in parts])
 
     def pause(self) -> None:
         """Stop the stream on purpose; samples that were not passed on are skipped."""
@@ -195,6 +268,7 @@ class RecorderProcess:
         finally:
             self._leave()
         self.counters = last.counters
+        self.gaps += last.gaps
         if last.error is not None:
             raise last.error
 
@@ -246,7 +320,7 @@ class RecorderProcess:
         return reply
 
     def _last_word(self) -> Closed:
-        """Return the reply to `Stop`; replies that were due before are void.
+        """Return the reply to `Stop`; of replies that were due before, gaps count.
 
         Raises:
             InstrumentError: the process died, or does not answer.
@@ -259,6 +333,8 @@ class RecorderProcess:
                 raise self._died() from error
             if isinstance(reply, Closed):
                 return reply
+            if isinstance(reply, News):
+                self._enter(reply)
         raise InstrumentError(
             f"the recording process has not closed its file within {_LAST_WORD:g} s; "
             "what was recorded is safe, `jointbench recover` finishes it"

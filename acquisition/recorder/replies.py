@@ -32,11 +32,13 @@ class News:
         items: in their order; spans that follow each other are joined.
         counters: of the stream.
         interrupted: whether a termination signal reached the recording process.
+        complete: whether all samples that were wanted are stored.
     """
 
     items: tuple[Item, ...]
     counters: Counters
     interrupted: bool = False
+    complete: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +69,12 @@ class Closed:
 
     Attributes:
         counters: of the stream, final.
+        gaps: that were in no news.
         error: of the disk while the file was closed, if any.
     """
 
     counters: Counters
+    gaps: tuple[StreamGap, ...] = ()
     error: Exception | None = None
 
 

@@ -23,11 +23,14 @@ class Setup:
         address: ``host:port`` of a device server, None for the driver of this computer.
         sensors: the channel table.
         settings: of the stream.
+        samples: per channel, after which the recording is complete; None for until it
+            is stopped.
     """
 
     address: str | None
     sensors: tuple[Sensor, ...]
     settings: StreamSettings
+    samples: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +40,13 @@ class CreateFile:
     Attributes:
         path: of a new file.
         meta: data known before the first sample, as JSON types.
+        finish: whether the recording process turns the file into a finished session
+            where the program dies; otherwise it remains a recording, to be recovered.
     """
 
     path: Path
     meta: Mapping[str, object]
+    finish: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +77,17 @@ class TriggerBy:
 
 
 @dataclass(frozen=True, slots=True)
+class Change:
+    """Stream something else into the same file; the reply is `Ready`.
+
+    Attributes:
+        setup: of as many channels, at the same rate.
+    """
+
+    setup: Setup
+
+
+@dataclass(frozen=True, slots=True)
 class Stop:
     """End the recording and close the file; the reply is `Closed`.
 
@@ -81,4 +98,4 @@ class Stop:
     interrupted: bool
 
 
-Request = Ask | CreateFile | Log | TriggerBy | Stop
+Request = Ask | CreateFile | Log | TriggerBy | Change | Stop

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.ni.stream_records import Block
+from jointbench.acquisition.session_file.follow_log import LOG, LogTail
 from jointbench.acquisition.session_file.live_read import LiveSpan
 
 
@@ -40,6 +42,7 @@ class StoredBlocks:
                 "folder on a disk of this computer"
             ) from error
         self._samples = self._file["samples"]
+        self._log = LogTail(self._file[LOG])
 
     def read(self, span: LiveSpan) -> Iterator[Block]:
         """Yield the samples of a span in blocks, in double precision.
@@ -50,6 +53,17 @@ class StoredBlocks:
         for stored in range(span.stored, span.past, self._block):
             part = span.cut(stored, min(stored + self._block, span.past))
             yield Block(self._values(part), part.segment, part.first)
+
+    def entries(self) -> tuple[dict[str, Any], ...]:
+        """Return the entries of the log that were written since the last call.
+
+        Raises:
+            InstrumentError: the disk refuses.
+        """
+        try:
+            return self._log.entries()
+        except (OSError, RuntimeError) as error:
+            raise self._unreadable(error) from error
 
     def close(self) -> None:
         """Close the file."""
@@ -63,7 +77,10 @@ class StoredBlocks:
                 self._samples[:, part.stored : part.past], dtype=np.float64
             )
         except (OSError, RuntimeError) as error:
-            raise InstrumentError(
-                f"{named(self._path)} cannot be read back ({error}); what was recorded "
-                "is safe"
-            ) from error
+            raise self._unreadable(error) from error
+
+    def _unreadable(self, error: Exception) -> InstrumentError:
+        return InstrumentError(
+            f"{named(self._path)} cannot be read back ({error}); what was recorded is "
+            "safe"
+        )

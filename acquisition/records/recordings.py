@@ -23,12 +23,34 @@ Samples = FloatArray | StoredSamples
 
 
 class Quantity(StrEnum):
-    """Quantity of a channel; the value is the word in files and columns."""
+    """Quantity of a channel; the value is the word in files and columns.
+
+    Pressure is that of a microphone [Pa], temperature is in degrees Celsius, a tacho
+    delivers pulses [V].
+    """
 
     FORCE = "force"
     ACCELERATION = "acceleration"
     VELOCITY = "velocity"
     DISPLACEMENT = "displacement"
+    PRESSURE = "pressure"
+    STRAIN = "strain"
+    VOLTAGE = "voltage"
+    TEMPERATURE = "temperature"
+    TACHO = "tacho"
+
+    @property
+    def is_motion(self) -> bool:
+        """Whether it is a response of a structure, of which FRFs and modes are."""
+        return self in _MOTIONS
+
+    @classmethod
+    def mechanical(cls) -> "tuple[Quantity, ...]":
+        """Return force and motions: what columns of foreign files are read as."""
+        return (cls.FORCE, *_MOTIONS)
+
+
+_MOTIONS = (Quantity.ACCELERATION, Quantity.VELOCITY, Quantity.DISPLACEMENT)
 
 
 class Verdict(StrEnum):
@@ -154,15 +176,13 @@ class Recording:
 
 
 def response_rows(recording: Recording) -> tuple[int, ...]:
-    """Return the indices of all channels that are not a force.
+    """Return the indices of all channels of a motion.
 
     Raises:
-        ChannelMissing: the recording holds forces only.
+        ChannelMissing: the recording holds none.
     """
     rows = tuple(
-        i
-        for i, channel in enumerate(recording.channels)
-        if channel.quantity is not Quantity.FORCE
+        i for i, channel in enumerate(recording.channels) if channel.quantity.is_motion
     )
     if not rows:
         raise ChannelMissing(
@@ -178,7 +198,7 @@ def common_response(channels: Sequence[Channel]) -> Quantity:
     Raises:
         ChannelMissing: they measure different quantities, or there is none.
     """
-    quantities = {c.quantity for c in channels if c.quantity is not Quantity.FORCE}
+    quantities = {c.quantity for c in channels if c.quantity.is_motion}
     if len(quantities) != 1:
         raise ChannelMissing(
             "response channels must measure one and the same quantity, got "

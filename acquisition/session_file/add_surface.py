@@ -11,6 +11,7 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 from jointbench.acquisition.session_file.store import read_session, write_session
 
 
@@ -27,7 +28,7 @@ def require_addable(path: Path, name: str) -> Session:
     """
     if is_held(path):
         raise UsageError(f"'{path}' is being recorded; wait until it is done")
-    with open_guarded(path) as file:
+    with open_guarded(path, limits=SESSION_LIMITS) as file:
         live = read_attribute(file, "schema") == LIVE_SCHEMA
     if live:
         raise UsageError(

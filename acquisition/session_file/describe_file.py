@@ -20,6 +20,7 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.records.provenance import Provenance
 from jointbench.acquisition.records.recordings import Hit
 from jointbench.acquisition.session_file.record_groups import in_order, number
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, damage_named
 from jointbench.acquisition.session_file.streams import (
     read_channels,
@@ -53,7 +54,7 @@ def describe_file(path: Path | str) -> Description:
         BadData: it cannot be opened, is damaged, or exceeds the limits of a
             measurement.
     """
-    with open_guarded(path) as file, damage_named(path):
+    with open_guarded(path, limits=SESSION_LIMITS) as file, damage_named(path):
         found: Description = {
             "file": Path(path).name,
             "schema": read_attribute(file, "schema"),

@@ -28,6 +28,7 @@ from jointbench.acquisition.session_file.live_read import (
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
 from jointbench.acquisition.session_file.overwrite_guard import require_session
 from jointbench.acquisition.session_file.recovery import is_finished, outline_live
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 from jointbench.acquisition.session_file.store import (
     SESSION_SCHEMA,
     SESSION_TITLE,
@@ -84,7 +85,8 @@ def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finis
     if overwrite:
         require_session(target)
     # The source is closed before the target takes its name.
-    with locked(target), new as file, open_guarded(source) as live:
+    opened = open_guarded(source, limits=SESSION_LIMITS)
+    with locked(target), new as file, opened as live:
         with damage_named(source):
             require_schema(live, LIVE_SCHEMA, source)
         return _copy(source, live, file)

@@ -8,7 +8,7 @@ one hit after the other unpack it once.
 import weakref
 from collections import OrderedDict
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,12 +19,16 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.array_checks import require_finite
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.file_access.hdf5_guards import FileLimits, open_guarded
+from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.netcdf_write import CHUNK_VALUES
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.records.stored_samples import StoredSamples
+from jointbench.acquisition.session_file.live_read import read_live
+from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
 from jointbench.acquisition.session_file.record_groups import in_order
+from jointbench.acquisition.session_file.recovery import outline_live
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 from jointbench.acquisition.session_file.store import (
     SESSION_SCHEMA,
     damage_named,
@@ -39,8 +43,6 @@ _MOST_KEPT = 2**26
 """Size of the unpacked samples that are kept [bytes]: one hit of 64 channels and 2 s at
 51.2 kS/s takes half of it in single precision."""
 _DOUBLE = 8
-_LIMITS = FileLimits(unpacked_bytes=2**37, in_parts="/samples")
-"""Samples are unpacked in parts; their ratio to the file stays limited."""
 
 
 @dataclass(slots=True, eq=False, weakref_slot=True)
@@ -79,15 +81,25 @@ class _OpenFile:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rows:
-    """The samples of one recording in an open session."""
+    """The samples of one recording in an open session.
+
+    Attributes:
+        file: an open one.
+        name: of the dataset.
+        shape: channels and samples of each.
+        chunk: of the dataset.
+        origin: index of the first sample in the dataset.
+    """
 
     file: _OpenFile
     name: str
     shape: tuple[int, int]
     chunk: tuple[int, int]
+    origin: int = 0
 
     def read(self, row: int, first: int, past: int) -> FloatArray:
         height, width = self.chunk
+        first, past = first + self.origin, past + self.origin
         top = row - row % height
         found = np.empty(past - first)
         for left in range(first - first % width, past, width):
@@ -98,12 +110,34 @@ class _Rows:
         return found
 
 
-def _stored(file: _OpenFile, dataset: h5py.Dataset) -> StoredSamples:
-    """Return samples that stay in the file; a file of others may have no chunks."""
+def _stored(
+    file: _OpenFile, dataset: h5py.Dataset, span: tuple[int, int] | None = None
+) -> StoredSamples:
+    """Return samples that stay in the file; a file of others may have no chunks.
+
+    Args:
+        file: an open one.
+        dataset: in it.
+        span: first of the samples and their number; None for all.
+    """
     height, width = dataset.chunks or (1, CHUNK_VALUES)
     rows, columns = dataset.shape
-    shape, chunk = (int(rows), int(columns)), (int(height), int(width))
-    return StoredSamples(_Rows(file, str(dataset.name), shape, chunk))
+    first, count = span or (0, int(columns))
+    shape, chunk = (int(rows), count), (int(height), int(width))
+    return StoredSamples(_Rows(file, str(dataset.name), shape, chunk, first))
+
+
+def _live_session(file: h5py.File, opened: _OpenFile) -> Session:
+    """Return the session of a recording, its samples in its file."""
+    outline, spans = outline_live(read_live(file))
+    recordings = (
+        replace(
+            recording,
+            samples=_stored(opened, file["samples"], (span.stored, span.count)),
+        )
+        for recording, span in zip(outline.recordings, spans, strict=True)
+    )
+    return replace(outline, recordings=tuple(recordings))
 
 
 def open_session(path: Path | str, *, most_whole: int = MOST_WHOLE) -> Session:
@@ -120,19 +154,38 @@ def open_session(path: Path | str, *, most_whole: int = MOST_WHOLE) -> Session:
         BadData: as `read_session`; for samples that are read later, on access.
     """
     with ExitStack() as stack:
-        file = stack.enter_context(open_guarded(path, limits=_LIMITS))
+        file = stack.enter_context(open_guarded(path, limits=SESSION_LIMITS))
         if not _is_large(file, path, most_whole):
             return read_session(path)
         opened = _OpenFile(Path(path), file)
         with damage_named(path):
-            session = read_content(file, partial(_stored, opened))
+            if read_attribute(file, "schema") == LIVE_SCHEMA:
+                session = _live_session(file, opened)
+            else:
+                session = read_content(file, partial(_stored, opened))
         weakref.finalize(opened, stack.pop_all().close)
     return session
 
 
 def _is_large(file: h5py.File, path: Path | str, most: int) -> bool:
     with damage_named(path):
-        if read_attribute(file, "schema") != SESSION_SCHEMA:
+        schema = read_attribute(file, "schema")
+        if schema == LIVE_SCHEMA:
+            return _DOUBLE * int(file["samples"].size) > most
+        if schema != SESSION_SCHEMA:
             return False
         groups = in_order(file, "stream")
         return sum(_DOUBLE * int(group["samples"].size) for group in groups) > most
+
+
+def read_all_samples(path: Path) -> None:
+    """Read every sample of a finished session once, some columns at a time.
+
+    Raises:
+        BadData: a sample cannot be read, or is not finite.
+    """
+    with open_guarded(path, limits=SESSION_LIMITS) as file, damage_named(path):
+        for group in in_order(file, "stream"):
+            dataset = group["samples"]
+            for first in range(0, dataset.shape[1], CHUNK_VALUES):
+                require_finite("samples", dataset[:, first : first + CHUNK_VALUES])

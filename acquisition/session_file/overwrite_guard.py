@@ -9,6 +9,7 @@ from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_size
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 
 FAMILIES = ("jointbench-session/", "jointbench-live/")
 """Prefixes of the layouts of finished sessions and of recordings."""
@@ -24,7 +25,7 @@ def require_session(path: Path) -> None:
         return
     try:
         file_size(path)
-        with open_guarded(path) as file:
+        with open_guarded(path, limits=SESSION_LIMITS) as file:
             schema = read_attribute(file, "schema")
     except BadData:
         schema = None

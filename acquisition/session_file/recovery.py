@@ -33,7 +33,11 @@ from jointbench.acquisition.session_file.live_read import (
 )
 
 _SESSION_TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
-_NO_STEPS = {"hit", "verdict", "run", "ask", "condition", "message", None}
+_NO_STEPS = {
+    *("hit", "verdict", "run", "ask", "condition", "message", "session", "average"),
+    "gain",
+    *("command", "pause", "seen", "reopened", "tighten", None),
+}
 """Entries that are part of the recordings, or of the log alone."""
 _NUMBERS = (str, int, float, bool)
 

@@ -14,6 +14,7 @@ import random
 import signal
 import tempfile
 import time
+from collections.abc import Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -22,11 +23,13 @@ import numpy as np
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import read_session
+from jointbench.station.bench_view.text_screen import TextScreen
 from jointbench.station.measure.bench_session import measure
 from jointbench.station.measure.chassis import open_chassis
 from jointbench.station.measure.plan import MeasurePlan, read_plan
-from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.screen.terminal import console
+from jointbench.station.session_events.event_codec import Stamped
+from jointbench.station.session_events.view_events import SessionBegun
 
 PLAN = Path(__file__).parents[2] / "examples" / "plates.toml"
 SOURCE = "sim:plates?seed=5"
@@ -39,20 +42,12 @@ class Reporting(TextScreen):
         super().__init__(console("-"))
         self.parent, self.count = parent, 0
 
-    def begin(self, channels: object, sample_rate: float) -> None:
+    def follow(self, events: Sequence[Stamped]) -> None:
         """Report the start of the recording."""
-        self.parent.send(0)
+        if any(isinstance(one.event, SessionBegun) for one in events):
+            self.parent.send(self.count)
 
-    def say(self, line: str) -> None:
-        """Print nothing."""
-
-    def ask(self, condition: object, done: int, total: int) -> None:
-        """Print nothing."""
-
-    def hit(self, news: object) -> None:
-        """Print nothing."""
-
-    def block(self, samples: np.ndarray) -> None:
+    def level(self, samples: np.ndarray) -> None:
         """Report how many samples were passed on."""
         self.count += samples.shape[1]
         self.parent.send(self.count)

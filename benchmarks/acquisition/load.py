@@ -266,8 +266,8 @@ def page(runs: list[Run]) -> str:
             "two cores; beside chassis and measurement so many other processes as "
             "stated compute without a pause. Lost samples are those that the device "
             "counted minus those in its buffer minus those in the file. In brackets "
-            "are the missing samples of the gaps that the program had seen when it was "
-            "stopped. Memory is that after a minute and that at the end.",
+            "are the missing samples of the gaps that the program states. Memory is "
+            "that after a minute and that at the end.",
             "",
             "| channels x rate | signal [s] | other processes | load (1 min) | hits "
             "judged | device counter | in its buffer | stored | lost | gaps (stated) | "

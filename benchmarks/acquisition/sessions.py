@@ -28,6 +28,7 @@ from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates import PlatesDesign, natural_frequencies
 from jointbench.simulators.plates.plates_bench import PlatesBench
+from jointbench.station.bench_view.text_screen import TextScreen
 from jointbench.station.measure.bench_session import Measured, measure
 from jointbench.station.measure.chassis import (
     OpenChassis,
@@ -35,7 +36,6 @@ from jointbench.station.measure.chassis import (
     open_chassis,
 )
 from jointbench.station.measure.plan import read_plan
-from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import run_chain
 from jointbench.station.pipeline.recordings_by_preload import by_preload
 from jointbench.station.screen.terminal import console

@@ -9,9 +9,11 @@ Source:
     Bendat and Piersol, Random Data (2010), sec. 5.2 (ordinary coherence).
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.hits.hit_spectra import HitSpectra
 
@@ -39,6 +41,21 @@ def typical_coherence(
     return float(np.median(lines, axis=1).mean()) if lines.size else None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class HitSums:
+    """Sums over hits at one point.
+
+    Attributes:
+        force: |F|^2, shape (n_lines,).
+        response: |X|^2, shape (n_responses, n_lines).
+        cross: X F*, shape (n_responses, n_lines).
+    """
+
+    force: FloatArray
+    response: FloatArray
+    cross: ComplexArray
+
+
 def coherence_without(spectra: HitSpectra) -> FloatArray:
     """Return the coherence of the remaining hits, with each hit left out in turn.
 
@@ -50,18 +67,35 @@ def coherence_without(spectra: HitSpectra) -> FloatArray:
         where they excite none.
     """
     force, response = spectra.force, spectra.response
-    own_force = np.abs(force) ** 2
-    all_force = own_force.sum(axis=0)
-    all_response = np.sum(np.abs(response) ** 2, axis=0)
-    all_cross = np.sum(response * force[:, None, :].conj(), axis=0)
-    found = []
-    for f, x, power in zip(force, response, own_force, strict=True):
-        others = np.maximum(all_force - power, 0.0)
-        answers = np.maximum(all_response - np.abs(x) ** 2, 0.0)
-        cross = all_cross - x * f.conj()
-        product = answers * np.maximum(others, _LEAST * others.max())
-        safe = np.where(product > 0.0, product, 1.0)
-        coherence = np.minimum(np.abs(cross) ** 2 / safe, 1.0)
-        band = excited_band_of(others, spectra.frequency)
-        found.append(typical_coherence(coherence, spectra.frequency, band) or 0.0)
-    return np.array(found)
+    sums = HitSums(
+        np.sum(np.abs(force) ** 2, axis=0),
+        np.sum(np.abs(response) ** 2, axis=0),
+        np.sum(response * force[:, None, :].conj(), axis=0),
+    )
+    return np.array(
+        [
+            coherence_of_others(sums, f, x, spectra.frequency)
+            for f, x in zip(force, response, strict=True)
+        ]
+    )
+
+
+def coherence_of_others(
+    sums: HitSums, force: ComplexArray, response: ComplexArray, frequency: FloatArray
+) -> float:
+    """Return the coherence of hits without one of them, see `coherence_without`.
+
+    Args:
+        sums: over all of the hits.
+        force: spectrum of the one hit, shape (n_lines,).
+        response: its responses, shape (n_responses, n_lines).
+        frequency: of the lines [Hz].
+    """
+    others = np.maximum(sums.force - np.abs(force) ** 2, 0.0)
+    answers = np.maximum(sums.response - np.abs(response) ** 2, 0.0)
+    cross = sums.cross - response * force.conj()
+    product = answers * np.maximum(others, _LEAST * others.max())
+    safe = np.where(product > 0.0, product, 1.0)
+    coherence = np.minimum(np.abs(cross) ** 2 / safe, 1.0)
+    band = excited_band_of(others, frequency)
+    return typical_coherence(coherence, frequency, band) or 0.0

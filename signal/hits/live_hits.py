@@ -33,6 +33,11 @@ class CutHit:
         """Make the samples read-only."""
         freeze(self, "samples")
 
+    @property
+    def count(self) -> int:
+        """Number of samples of each channel."""
+        return int(self.samples.shape[1])
+
 
 @dataclass(slots=True)
 class HitCutter:

@@ -13,15 +13,20 @@ from jointbench.simulators.chassis.modules.inventory import (
     module_list,
 )
 from jointbench.simulators.chassis.server import LOOPBACK, ChassisSetup
+from jointbench.simulators.machines.running_machine import RunningMachine
 from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.calibration_mass import CalibrationMass
 from jointbench.simulators.plates.plates_bench import PlatesBench
 
 _KEYS = (
     "seed, speed, level, interval, fates, faults, module, modules, name, top_rate, "
-    "trigger, port, host; sim:mass also has mass, hammer, response"
+    "trigger, port, host; sim:mass also has mass, hammer, response; sim:spindle has "
+    "rpm, sim:shaker has signal"
 )
-_SPECIMENS = ("plates", "mass", "sine")
+_SIGNALS = ("random", "sweep")
+_MACHINES = ("spindle", "shaker")
+_SPECIMENS = ("plates", "mass", "sine", *_MACHINES)
+_INPUTS = "3"  # modules of four inputs that the machine needs
 
 
 def is_plates_url(url: str) -> bool:
@@ -35,7 +40,8 @@ def chassis_from_url(url: str) -> ChassisSetup:
 
     Args:
         url: ``sim:plates``, ``sim:mass`` for a mass to calibrate on, or ``sim:sine``
-            for a sine in the limits of each channel, and, as a query, any of:
+            for a sine in the limits of each channel, ``sim:spindle`` for a machine
+            that runs, ``sim:shaker`` for one on a shaker, and, as a query, any of:
             ``seed``; ``speed``, seconds of signal per second or ``max``; ``level``,
             usual peak force [N]; ``interval``, between unrequested strokes [s];
             ``fates`` of the strokes in turn, for example ``good,double*2,weak``;
@@ -44,7 +50,8 @@ def chassis_from_url(url: str) -> ChassisSetup:
             chassis; ``top_rate`` of an external clock [Hz]; ``trigger``, 0 for modules
             without an analogue trigger; ``port``; ``host``, the loopback interface
             unless stated. The mass has ``mass`` [kg], and ``hammer`` and ``response``,
-            true sensitivity over the usual one.
+            true sensitivity over the usual one. The spindle has ``rpm``, the shaker
+            ``signal``, ``random`` or ``sweep``.
 
     Raises:
         UsageError: an unknown key, or an invalid value.
@@ -70,12 +77,16 @@ def chassis_from_url(url: str) -> ChassisSetup:
     bench = PlatesBench(operator=operator, seed=seed)
     if urlsplit(url).path == "mass":
         bench = _mass_bench(bench, take)
+    source = None
+    if urlsplit(url).path in _MACHINES:
+        source = _machine(urlsplit(url).path, seed, take, values.pop("signal", ""))
     top_rate = values.pop("top_rate", "")
     module = values.pop("module", DEFAULT_MODULE)
-    modules = int(take("modules", "1", int))
+    path = urlsplit(url).path
+    modules = int(take("modules", _INPUTS if path in _MACHINES else "1", int))
     module_list(module, modules)
     setup = ChassisSetup(
-        bench=None if urlsplit(url).path == "sine" else bench,
+        bench=source or (None if path == "sine" else bench),
         speed=math.inf if speed == "max" else _positive(speed),
         module=module,
         modules=modules,
@@ -91,6 +102,21 @@ def chassis_from_url(url: str) -> ChassisSetup:
             f"unknown key {next(iter(values))!r} in {url!r}; known: {_KEYS}"
         )
     return setup
+
+
+def _machine(
+    path: str,
+    seed: int,
+    take: Callable[[str, str, Callable[[str], float]], float],
+    signal: str,
+) -> RunningMachine:
+    if path == "spindle":
+        if signal:
+            raise UsageError("signal is for sim:shaker; a spindle has rpm")
+        return RunningMachine(seed=seed, rpm=take("rpm", "3000", _positive))
+    if signal not in {"", *_SIGNALS}:
+        raise UsageError(f"signal {signal!r} must be one of {', '.join(_SIGNALS)}")
+    return RunningMachine(seed=seed, shaker=signal or _SIGNALS[0])
 
 
 def _mass_bench(

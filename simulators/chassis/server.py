@@ -31,7 +31,7 @@ from jointbench.simulators.chassis.modules.inventory import (
 )
 from jointbench.simulators.chassis.modules.lookup import described
 from jointbench.simulators.chassis.protocol import add_servicer
-from jointbench.simulators.chassis.specimen import StreamedSpecimen
+from jointbench.simulators.chassis.specimen import MachineSpecimen, StreamedSpecimen
 from jointbench.simulators.chassis.tasks.acquisition import Pace
 from jointbench.simulators.chassis.tasks.signals import (
     Signals,
@@ -39,6 +39,7 @@ from jointbench.simulators.chassis.tasks.signals import (
     SpecimenSignals,
 )
 from jointbench.simulators.chassis.tasks.task import SharedBench, SimulatedTask
+from jointbench.simulators.machines.running_machine import RunningMachine
 from jointbench.simulators.plates.plates_bench import (
     LivePlates,
     PlannedStroke,
@@ -53,7 +54,7 @@ _OPTIONS = (
     ("grpc.max_send_message_length", -1),
     ("grpc.so_reuseport", 0),
     ("grpc.keepalive_time_ms", 10_000),
-    ("grpc.keepalive_timeout_ms", 5_000),
+    ("grpc.keepalive_timeout_ms", 20_000),
     ("grpc.http2.min_ping_interval_without_data_ms", 5_000),
     ("grpc.keepalive_permit_without_calls", 1),
 )
@@ -237,6 +238,8 @@ def _specimen(
         return None
     if isinstance(bench, PlatesBench):
         return LivePlates(bench)
+    if isinstance(bench, RunningMachine):
+        return MachineSpecimen(bench)
     return StreamedSpecimen(bench)
 
 

@@ -2,6 +2,7 @@
 """Specimen at the inputs of the simulated chassis."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.recordings import Channel
 from jointbench.acquisition.records.source import Source
+from jointbench.simulators.machines.running_machine import RunningMachine
 from jointbench.simulators.plates.plates_bench import PluggedSensor
 
 INPUT_RANGE = 5.0  # [V]
@@ -64,6 +66,19 @@ class StreamedSpecimen:
         drop = max(0, first - self._from)
         self._data = self._data[:, drop:]
         self._from += drop
+
+
+class MachineSpecimen(StreamedSpecimen):
+    """A machine at the inputs, at any sample rate."""
+
+    def __init__(self, machine: RunningMachine) -> None:
+        super().__init__(machine)
+        self._machine = machine
+
+    def begin(self, sample_rate: float) -> None:
+        """Start the machine from rest at a rate [Hz]."""
+        self._source = replace(self._machine, sample_rate=sample_rate)
+        super().begin(sample_rate)
 
 
 def plugged(channel: Channel) -> PluggedSensor:

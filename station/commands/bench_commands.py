@@ -56,25 +56,45 @@ def record_command(
     source: Annotated[
         str,
         typer.Argument(
-            metavar="URL",
-            help="Bench: 'sim:two-body-campaign', 'sim:bolted-plates', 'sim:lap-beam' "
-            "or 'sim:column-on-bed', with parameters.",
+            metavar="PLAN|URL",
+            help="Plan of timed runs (TOML); or a bench: 'sim:two-body-campaign', "
+            "'sim:bolted-plates', 'sim:lap-beam' or 'sim:column-on-bed'.",
         ),
     ],
     out: SessionOut,
+    instrument: Annotated[
+        str | None,
+        typer.Option(
+            "--source",
+            metavar="URL",
+            help="Instrument of a plan: 'ni:', 'ni+grpc://HOST:PORT', 'sim:spindle' or "
+            "'sim:shaker'; from the plan by default.",
+        ),
+    ] = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Record a whole campaign on a bench into a session file.
+    """Record timed runs by a plan, or a simulated campaign.
 
-    All hits are judged after the recording. A flexible bench (two bodies on bolts)
-    gives a file of raw hits; nominal values and what it hides go beside it as JSON.
+    Runs of a plan are operating runs, shaker runs, or plain recordings; a session of
+    hammer hits is recorded by 'measure'. Of a simulated campaign all hits are judged
+    after the recording; nominal values and what it hides go beside it.
 
     Examples:
+        jointbench record examples/operating.toml --out spindle.h5
+        jointbench record plan.toml --out run.h5 --source ni:
         jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out session.h5
         jointbench record 'sim:bolted-plates?seed=3&hide=loose_bolt' --out hits.h5
     """
+    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
+    if source.lower().endswith(".toml"):
+        from jointbench.station.continuous.record_runs import run_record_plan
+
+        whole = run_record_plan(
+            Path(source), out, source=instrument, overwrite=force, json_target=json
+        )
+        return 0 if whole else EXIT_QUALITY
     from jointbench.simulators.flexible.flexible_url import is_flexible_url
 
     if is_flexible_url(source):
@@ -111,9 +131,65 @@ def watch_command(
         jointbench watch session.h5
         jointbench watch session.h5 --once --json -
     """
-    from jointbench.station.measure.watch_session import run_watch
+    from jointbench.station.bench_view.watch_session import run_watch
 
     run_watch(session, once=once, json_target=json)
+
+
+def doctor_command(
+    plan: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="PLAN",
+            help="Plan of 'measure' or 'record' (TOML); the devices alone without one.",
+        ),
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="Instrument: 'ni:', 'ni+grpc://HOST:PORT' or 'sim:plates'; from the "
+            "plan by default.",
+        ),
+    ] = None,
+    noise: Annotated[
+        str,
+        typer.Option(
+            metavar="QUANTITY", help="Duration of the noise, for example '5 s'."
+        ),
+    ] = "10 s",
+    hit: Annotated[
+        str,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Longest time for one hit, for example '30 s'; '0 s' for none.",
+        ),
+    ] = "30 s",
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Examine a bench before the first measurement.
+
+    The command examines driver, devices and sensors against the plan, the noise of
+    each channel against its data sheet, and one hit. Each finding states what to do.
+
+    Examples:
+        jointbench doctor plan.toml --source ni:
+        jointbench doctor --source ni+grpc://192.168.0.7:31763
+        jointbench doctor examples/plates.toml --source 'sim:plates?seed=1'
+    """
+    from jointbench.acquisition.basics.units import parse_value
+    from jointbench.station.doctor.bench_finding import Health
+    from jointbench.station.doctor.run_doctor import run_doctor
+
+    found = run_doctor(
+        plan,
+        source=source,
+        noise_time=parse_value(noise, "time"),
+        hit_time=parse_value(hit, "time"),
+        json_target=json,
+    )
+    return 0 if all(f.health is Health.GOOD for f in found) else EXIT_QUALITY
 
 
 def calibrate_command(

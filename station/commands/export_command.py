@@ -9,7 +9,7 @@ functions and quantities, and the results of contact, joint and gap as JSON. Uni
 in the column heads, in variables called ``*_unit``, or in fields of the format.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from jointbench.acquisition.formats.samples.universal import SUFFIXES
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.records.surfaces import Surface
-from jointbench.acquisition.session_file.store import read_session
+from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.station.files.output_paths import (
     check_outputs,
     make_folder,
@@ -96,19 +96,17 @@ def _writer(file: Path, kind: str) -> Callable[[Path, Path], Iterator[Path]]:
         return _universal_results if kind == "uff" else partial(_write_results, kind)
     if kind == "uff":
         return _universal_session
-    return lambda path, target: _write_tables(
-        list(_tables(read_session(path))), target, kind
-    )
+    return lambda path, target: _write_tables(_tables(open_session(path)), target, kind)
 
 
 def _write_tables(
-    tables: Sequence[ExportTable], target: Path, kind: str
+    tables: Iterable[ExportTable], target: Path, kind: str
 ) -> Iterator[Path]:
     if kind == "csv":
         yield from write_csv(target, tables)
     else:
         path = target.with_name(f"{target.name}.mat")
-        write_mat(path, tables)
+        write_mat(path, list(tables))
         yield path
 
 
@@ -121,7 +119,7 @@ def _write_results(kind: str, file: Path, target: Path) -> Iterator[Path]:
 
 
 def _universal_session(file: Path, target: Path) -> Iterator[Path]:
-    session = read_session(file)
+    session = open_session(file)
     if not session.recordings:
         raise UsageError(
             f"'{file}' contains no samples for a universal file; use --to csv"

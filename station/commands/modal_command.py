@@ -10,9 +10,11 @@ from jointbench.acquisition.formats.frfs.frf_columns import TABLE_EXAMPLE
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.frf.continuous_frf import estimate_continuous_frf
 from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.input_files import is_session_name, read_recordings
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.run_purposes import shaker_runs
 from jointbench.station.files.universal_frf import write_universal
 from jointbench.station.pipeline.chain import (
     ChainSettings,
@@ -103,6 +105,9 @@ def run_modal(
     target = out or _next_to_session(files)
     check_outputs(files, [target, universal, json_target])
     stored = _recordings(files, samples or SampleOptions())
+    shaken = shaker_runs(stored)
+    if shaken:
+        return _shaken_modes(shaken, files, settings, (target, universal, json_target))
     # Levels of hits are judged over the whole campaign, across preloads.
     groups = by_preload(judge_hits(stored, settings, run))
     chains, contents = [], []
@@ -120,6 +125,21 @@ def run_modal(
     content = join_pages([preload for preload, _ in groups], contents)
     write_json(json_target, content | {"results": str(target or "")})
     return chains[0]
+
+
+def _shaken_modes(
+    runs: Sequence[Recording],
+    files: Sequence[Path],
+    settings: ChainSettings,
+    targets: Targets,
+) -> ModalChain:
+    """Identify the modes of shaker runs, show them and store them."""
+    with progress_bar("estimating FRFs") as progress:
+        frf = estimate_continuous_frf(runs, estimator=settings.estimator)
+        chain = frf_chain(frf, settings, StageRun(progress=progress))
+    content = _give_out(chain, files, targets)
+    write_json(targets[2], content | {"results": str(targets[0] or "")})
+    return chain
 
 
 def _recordings(files: Sequence[Path], given: SampleOptions) -> tuple[Recording, ...]:

@@ -14,6 +14,7 @@ from jointbench.signal.output_only.output_only_modes import (
 )
 from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.run_purposes import operating_runs
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.value_text import with_sd
 
@@ -59,6 +60,7 @@ def only_recording(recordings: Sequence[Recording]) -> Recording:
     Raises:
         BadData: there are several; correlations cannot be joined across recordings.
     """
+    recordings = operating_runs(recordings) or recordings
     if len(recordings) > 1:
         names = ", ".join(repr(r.name) for r in recordings)
         raise BadData(

@@ -16,6 +16,7 @@ from jointbench.acquisition.file_access.content_digest import Seal, seal_of
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.quoting import shown, visible
+from jointbench.acquisition.session_file.session_limits import SESSION_LIMITS
 from jointbench.acquisition.session_file.store import damage_named
 from jointbench.analysis.gap.intake import read_campaign
 from jointbench.station.archive.archive_table import TABLE_SCHEMA
@@ -159,7 +160,7 @@ def _table(path: Path) -> Checked:
 
 
 def _has_schema(path: Path, schema: str) -> bool:
-    with open_guarded(path) as file, damage_named(path):
+    with open_guarded(path, limits=SESSION_LIMITS) as file, damage_named(path):
         return bool(read_attribute(file, "schema") == schema)
 
 

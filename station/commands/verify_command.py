@@ -7,6 +7,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.session_file.finish import Finished, finish_live
+from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.recovery import recovered_path
 from jointbench.acquisition.session_file.store import (
@@ -38,7 +39,7 @@ def run_verify(file: Path, *, json_target: str | None) -> bool:
     """
     check_outputs([file], [json_target])
     problems = problems_of(file)
-    session = read_session(file)
+    session = open_session(file)
     screen = console(json_target)
     rows = [
         ("recordings", f"{len(session.recordings)}"),

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Where results may go: never over an input, never over a file of another kind."""
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.replace_file import replace_file
 
 _HEAD_BYTES = 512
 _HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
@@ -131,7 +131,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     part = path.with_name(path.name + ".part")
     try:
         yield part
-        os.replace(part, path)  # noqa: PTH105 - replaces on Windows, Path.rename not
+        replace_file(part, path)
     except OSError as error:
         raise UsageError(
             f"{named(path)} cannot be written: {error.strerror or error}; choose "

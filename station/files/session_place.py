@@ -5,7 +5,6 @@ An earlier session of that name is safe until the new one has come to its end: t
 one is recorded beside it, and takes its place only then.
 """
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.replace_file import replace_file
 from jointbench.acquisition.session_file.overwrite_guard import (
     fresh_path,
     require_replaceable,
@@ -60,7 +60,7 @@ class Place:
         if self.own == self.asked or not whole:
             return self.own
         try:
-            os.replace(self.own, self.asked)  # noqa: PTH105 - replaces on Windows too
+            replace_file(self.own, self.asked)
         except OSError as error:
             raise UsageError(
                 f"{named(self.asked)} cannot be replaced: {error.strerror}; the new "

@@ -8,7 +8,7 @@ others in their heads; in MAT it stays an array.
 import csv
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isnan
 from pathlib import Path
@@ -61,7 +61,7 @@ class ExportTable:
     labels: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
-def write_csv(target: Path, tables: Sequence[ExportTable]) -> Iterator[Path]:
+def write_csv(target: Path, tables: Iterable[ExportTable]) -> Iterator[Path]:
     """Write one file for each dimension of each table; numbers with all their digits.
 
     Args:

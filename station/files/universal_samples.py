@@ -13,7 +13,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.units import example_unit
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.acquisition.records.session import Session
-from jointbench.station.files.output_paths import write_text
+from jointbench.station.files.output_paths import whole_file
 from jointbench.station.files.universal_frf import axis_line, printable
 
 _EDGE = "    -1"
@@ -29,6 +29,7 @@ _WORDS = {
 }
 _DIRECTIONS = {"x": 1, "y": 2, "z": 3}
 _ROW = 4
+_PIECE = 2**16  # samples that are formatted at a time
 
 
 def write_universal_samples(path: Path, session: Session) -> None:
@@ -38,11 +39,15 @@ def write_universal_samples(path: Path, session: Session) -> None:
         path: file to write.
         session: its recordings go in; surfaces have no place there.
     """
-    lines = list(_header(session))
+    with whole_file(path) as part, part.open("w", encoding="utf-8", newline="\n") as to:
+        to.writelines(f"{line}\n" for line in _lines(session))
+
+
+def _lines(session: Session) -> Iterator[str]:
+    yield from _header(session)
     for recording in session.recordings:
         for row, channel in enumerate(recording.channels):
-            lines += _samples(recording, row, channel)
-    write_text(path, "\n".join(lines) + "\n")
+            yield from _samples(recording, row, channel)
 
 
 def _header(session: Session) -> Iterator[str]:
@@ -64,7 +69,7 @@ def _header(session: Session) -> Iterator[str]:
 
 def _samples(recording: Recording, row: int, channel: Channel) -> Iterator[str]:
     code, word = _WORDS[channel.quantity]
-    values = recording.samples[row]
+    count = recording.samples.shape[1]
     step = 1.0 / recording.sample_rate
     yield from (_EDGE, "    58")
     for text in (f"{recording.name} {channel.name}", "jointbench", "", "", "NONE"):
@@ -77,14 +82,15 @@ def _samples(recording: Recording, row: int, channel: Channel) -> Iterator[str]:
     )
     start = recording.start_time
     yield (
-        f"{_REAL_DOUBLE:10d}{values.size:10d}{_EVEN:10d}{start:13.5e}{step:13.5e}"
-        f"{0.0:13.5e}"
+        f"{_REAL_DOUBLE:10d}{count:10d}{_EVEN:10d}{start:13.5e}{step:13.5e}{0.0:13.5e}"
     )
     yield axis_line(_TIME, "Time", "s")
     yield axis_line(code, word, example_unit(channel.quantity.value))
     yield from (axis_line(0, "NONE", "NONE"),) * 2
-    for first in range(0, values.size, _ROW):
-        yield "".join(f"{value:20.11e}" for value in values[first : first + _ROW])
+    for begin in range(0, count, _PIECE):
+        values = recording.samples[row, begin : begin + _PIECE]
+        for first in range(0, values.size, _ROW):
+            yield "".join(f"{value:20.11e}" for value in values[first : first + _ROW])
     yield _EDGE
 
 

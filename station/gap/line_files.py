@@ -26,7 +26,7 @@ from jointbench.acquisition.formats.tables import load_table
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.station.gap.frf_levels import read_frf_lines
 
-_ROLES = tuple(quantity.value for quantity in Quantity)
+_ROLES = tuple(quantity.value for quantity in Quantity.mechanical())
 _OFF_LINE = 1e-3
 """Of the spacing: how far a frequency may be from a multiple of it."""
 

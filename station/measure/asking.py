@@ -16,7 +16,7 @@ class Asker:
     """Asks for one hit after another.
 
     Attributes:
-        bench: whose operator strikes, and whose watcher shows the request.
+        bench: whose operator strikes, and whose desk shows the request.
         route: knows where to strike.
         trigger: knows how long a hit takes.
     """
@@ -31,7 +31,7 @@ class Asker:
         """Ask for one hit under the present condition."""
         self._silent = self._asked = 0
         condition, done = self.route.condition, self.route.done
-        self.bench.watcher.ask(condition, done, self.route.planned)
+        self.bench.desk.ask(condition, done, self.route.planned)
         self.bench.operator.ask(condition)
 
     def wait(self, count: int) -> None:

@@ -2,12 +2,12 @@
 """Checks while the part is still on the bench: driving points and reciprocity."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray
-from jointbench.acquisition.records.recordings import Channel, Quantity
+from jointbench.acquisition.records.recordings import Channel
 from jointbench.signal.frf.frf import Frf
 from jointbench.station.measure.plan import Condition
 
@@ -43,27 +43,26 @@ class Check:
 
 @dataclass(slots=True)
 class CheckBook:
-    """The averages so far, and the checks that each new one makes possible.
+    """Averages of one torque and level, and the checks that each new one allows.
+
+    Points without a sensor have no check and are not kept.
 
     Attributes:
         channels: of responses and hammer.
     """
 
     channels: tuple[Channel, ...]
-    _averages: dict[tuple[float | None, float | None, str], Frf] = field(
-        default_factory=dict
-    )
+    _averages: dict[str, Frf] = field(default_factory=dict)
+    _present: tuple[float | None, float | None] = (None, None)
 
     def enter(self, condition: Condition, frf: Frf) -> tuple[Check, ...]:
         """Keep an average; check its driving point and every pair now complete."""
-        torque, level, point = condition.torque, condition.level, condition.point
-        self._averages[torque, level, point] = frf
-        same = {
-            struck: found
-            for (own_torque, own_level, struck), found in self._averages.items()
-            if (own_torque, own_level) == (torque, level)
-        }
-        pairs = reciprocity(same, self.channels)
+        present, point = (condition.torque, condition.level), condition.point
+        if present != self._present:
+            self._averages, self._present = {}, present
+        if _response_at(self.channels, point) is not None:
+            self._averages[point] = replace(frf, coherence=None, variance=None)
+        pairs = reciprocity(self._averages, self.channels)
         new = [check for check in pairs if point in check.name.split()]
         driving = driving_point(frf, self.channels, point)
         return tuple(new) if driving is None else (driving, *new)
@@ -131,7 +130,7 @@ def _compare(one: str, other: str, forth: ComplexArray, back: ComplexArray) -> C
 
 
 def _response_at(channels: tuple[Channel, ...], point: str) -> int | None:
-    responses = [c for c in channels if c.quantity is not Quantity.FORCE]
+    responses = [c for c in channels if c.quantity.is_motion]
     rows = [i for i, channel in enumerate(responses) if channel.point == point]
     return rows[0] if len(rows) == 1 else None
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Parts of a session: plan, recording, operator, screen, torque tester."""
+"""Parts of a session: plan, recording, operator, desk, torque tester."""
 
 from dataclasses import dataclass
 
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.records.recordings import Channel
 from jointbench.station.measure.bolt_torques import BoltWatch
-from jointbench.station.measure.observer import Operator, Watcher
+from jointbench.station.measure.observer import Operator
 from jointbench.station.measure.plan import MeasurePlan
+from jointbench.station.measure.session_desk import SessionDesk
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -19,7 +20,7 @@ class BenchParts:
         recorder: process that stores every sample, and passes it on.
         channels: of its stream.
         operator: whoever strikes and tightens.
-        watcher: whoever looks on.
+        desk: events out, commands in.
         bolts: reads the torque of every bolt; None where the plan names no tester.
         hardware_trigger: whether the device itself looks for hits after the trials.
     """
@@ -28,6 +29,6 @@ class BenchParts:
     recorder: RecorderProcess
     channels: tuple[Channel, ...]
     operator: Operator
-    watcher: Watcher
+    desk: SessionDesk
     bolts: BoltWatch | None = None
     hardware_trigger: bool = False

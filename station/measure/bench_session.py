@@ -25,7 +25,10 @@ from jointbench.acquisition.recorder.requests import Setup
 from jointbench.acquisition.records.recordings import Channel, Hit, Verdict
 from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live
+from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.live_write import channel_rows
+from jointbench.station.bench_view.live_view import LiveView
+from jointbench.station.bench_view.terminal_view import viewing
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.session_place import (
     Place,
@@ -33,19 +36,16 @@ from jointbench.station.files.session_place import (
     session_place,
 )
 from jointbench.station.measure.bench_parts import BenchParts
-from jointbench.station.measure.bench_screen import watching
 from jointbench.station.measure.bolt_torques import BoltWatch
 from jointbench.station.measure.chassis import OpenChassis, open_chassis
-from jointbench.station.measure.logged_messages import LoggedMessages
-from jointbench.station.measure.observer import Watcher
 from jointbench.station.measure.plan import MeasurePlan, conditions, read_plan
+from jointbench.station.measure.session_desk import SessionDesk
 from jointbench.station.measure.session_engine import MeasureSession
+from jointbench.station.measure.session_log import session_begun
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
-from jointbench.station.session_events.event_codec import to_entry
-from jointbench.station.session_events.flow_events import Warned
 from jointbench.station.sources.serial_port import line_name
 
 
@@ -108,8 +108,8 @@ def run_measure(
     screen = lasting_console(json_target)
     with session_place(out, overwrite=overwrite) as place:
         with _naming_file(place, screen), open_chassis(url) as opened:
-            with watching(screen) as watcher:
-                measured = measure(plan, opened, place.own, watcher)
+            with viewing(screen, place.own) as view:
+                measured = measure(plan, opened, place.own, view)
         measured = replace(measured, path=place.settle(whole=measured.whole))
         write_json(json_target, _summary(measured))
         _show(measured, screen)
@@ -130,7 +130,7 @@ def _naming_file(place: Place, screen: Console) -> Iterator[None]:
 
 
 def measure(
-    plan: MeasurePlan, opened: OpenChassis, out: Path, watcher: Watcher
+    plan: MeasurePlan, opened: OpenChassis, out: Path, view: LiveView
 ) -> Measured:
     """Record a session into `out` and finish its file, come what may.
 
@@ -147,7 +147,7 @@ def measure(
             with RecorderProcess(
                 _setup(plan, opened), given_up=lambda: record.interrupted
             ) as recorder:
-                _record(plan, opened, out, (recorder, watcher, warnings, record))
+                _record(plan, opened, out, (recorder, view, warnings, record))
         except BaseException:
             # What went wrong first is what the operator has to know.
             with suppress(JointbenchError):
@@ -192,10 +192,10 @@ def _record(
     plan: MeasurePlan,
     opened: OpenChassis,
     out: Path,
-    running: tuple[RecorderProcess, Watcher, tuple[str, ...], Record],
+    running: tuple[RecorderProcess, LiveView, tuple[str, ...], Record],
 ) -> None:
-    recorder, screen, warnings, record = running
-    watcher = LoggedMessages(screen, recorder)
+    recorder, view, warnings, record = running
+    desk = SessionDesk(recorder, view)
     channels = table_channels(plan.sensors)
     with _torque_tester(plan) as bolts:
         recorder.begin(out, _meta(plan, opened, channels, recorder.sample_rate))
@@ -205,21 +205,33 @@ def _record(
                 recorder=recorder,
                 channels=channels,
                 operator=opened.operator,
-                watcher=watcher,
+                desk=desk,
                 bolts=bolts,
                 hardware_trigger=by_device(plan, opened.chassis),
             ),
             record,
         )
         try:
-            watcher.begin(channels, recorder.sample_rate)
+            desk.write(
+                session_begun(
+                    plan,
+                    channels,
+                    source=opened.name,
+                    simulated=opened.simulated,
+                    sample_rate=recorder.sample_rate,
+                )
+            )
             for words in warnings:
-                recorder.log(to_entry(Warned(words)))
-                watcher.say(f"warning: {words}")
+                desk.warn(words)
             session.run()
         except KeyboardInterrupt:
             record.interrupted = True
-        recorder.stop(interrupted=record.interrupted)
+        try:
+            recorder.stop(interrupted=record.interrupted)
+        finally:
+            # The session may have ended before the last ones were reported.
+            record.gaps = recorder.gaps
+            desk.leave(read_log(out)[0])
 
 
 @contextmanager
@@ -275,7 +287,7 @@ def _show(measured: Measured, screen: Console) -> None:
         ("hits", ", ".join(f"{n} {word}" for word, n in counts.items()) or "none"),
         ("conditions", f"{measured.record.done} of {measured.planned}"),
         ("samples per channel", f"{measured.counters.delivered}"),
-        ("lost samples", f"{measured.counters.lost}"),
+        ("lost samples", _lost(measured)),
         (
             "interruptions",
             f"{sum(g.kind in ('back', 'rearmed') for g in measured.record.gaps)}",
@@ -286,6 +298,13 @@ def _show(measured: Measured, screen: Console) -> None:
         word = "good" if check.passed else "LOOK AT IT"
         screen.print(f"check {check.name}: {word}, {check.words}", soft_wrap=True)
     screen.print(f"\nnext: jointbench modal {measured.path}")
+
+
+def _lost(measured: Measured) -> str:
+    """Return the lost samples, and the gaps that they are in."""
+    counted, gaps = measured.counters.lost, measured.record.gaps
+    holes = sum(gap.samples > 0 for gap in gaps)
+    return f"{counted}" if not counted else f"{counted}, in {holes} gaps"
 
 
 def _counts(hits: list[Hit]) -> dict[str, int]:
@@ -318,6 +337,8 @@ def _summary(measured: Measured) -> dict[str, object]:
         "gaps": [
             {
                 "kind": g.kind,
+                "segment": g.segment,
+                "first_sample": g.first,
                 "samples": g.samples,
                 "seconds": g.seconds,
                 "words": g.words,

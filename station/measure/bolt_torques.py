@@ -8,22 +8,24 @@ is what a bolt got. Every reading that counts is in the file, those set aside to
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from typing import Protocol
 
 from jointbench.acquisition.basics.errors import FormatError, InstrumentError
 from jointbench.acquisition.basics.registry import Entry
-from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.serial_lines.instruments import read_torque, torque_tester
 from jointbench.acquisition.serial_lines.line import SerialLine
 from jointbench.acquisition.serial_lines.serial_instrument import (
     Reading,
     SerialInstrument,
 )
-from jointbench.station.measure.observer import Command, Watcher
+from jointbench.station.measure.session_desk import SessionDesk
 from jointbench.station.measure.session_record import Record
 from jointbench.station.schemas.plan_model import TorqueTable
-from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.session_events.flow_commands import QuitSession
+from jointbench.station.session_events.hit_commands import AcceptHit, UndoVerdict
 from jointbench.station.session_events.hit_events import BoltRead
+from jointbench.station.session_events.view_events import BoltAsked
 
 BEGUN = 0.3
 """Share of the target from which a bolt counts as being tightened [-]."""
@@ -35,17 +37,20 @@ _SILENCE = 1.0  # [s] after which a tester does not answer; it takes millisecond
 _RETRY = 0.2  # [s] between attempts to open a line that broke
 
 
+class BoltChoice(Enum):
+    """What the operator wants of the bolt that is tightened."""
+
+    TAKE = "take"
+    BACK = "back"
+    QUIT = "quit"
+
+
 class Surroundings(Protocol):
     """What a `BoltWatch` needs of the bench around it."""
 
     @property
-    def watcher(self) -> Watcher:
-        """Receives the messages."""
-        ...
-
-    @property
-    def recorder(self) -> RecorderProcess:
-        """Where it is logged."""
+    def desk(self) -> SessionDesk:
+        """Logs readings and messages, and has the commands."""
         ...
 
 
@@ -101,9 +106,9 @@ class BoltWatch:
 
         Args:
             target: of every bolt [N m].
-            bench: its watcher shows the request, and may answer: accept takes the
+            bench: its desk shows the request, and has the answers: accept takes the
                 reading as it is, undo goes back to the bolt before, quit ends the
-                session; its file takes every reading that counts.
+                session; the log takes every reading.
             record: says when the session was interrupted.
 
         Returns:
@@ -122,23 +127,23 @@ class BoltWatch:
     def _all(
         self, target: float, tester: "Tester", bench: Surroundings, record: Record
     ) -> tuple[float, ...] | None:
-        watcher, recorder = bench.watcher, bench.recorder
+        desk = bench.desk
         found: list[float] = []
         tries = 0
         while len(found) < self.bolts:
             number = len(found) + 1
-            watcher.say(f"tighten bolt {number} of {self.bolts} to {target:g} N m")
-            answer = self._one(target, (number, tester), watcher, record)
-            if answer is Command.QUIT:
+            desk.write(BoltAsked(number, self.bolts, target))
+            answer = self._one(target, (number, tester), desk, record)
+            if answer is BoltChoice.QUIT:
                 return None
-            if answer is Command.UNDO:
+            if answer is BoltChoice.BACK:
                 found, tries = found[:-1], 0
                 continue
             assert isinstance(answer, Reading)
             tries += 1
             words, kept = self._weigh(answer, target, tries)
-            recorder.log(_entry(answer, number, target, kept=kept))
-            watcher.say(f"bolt {number}: {answer.raw}, {words}")
+            desk.write(_bolt_read(answer, number, target, kept=kept))
+            desk.say(f"bolt {number}: {answer.raw}, {words}")
             if kept:
                 found, tries = [*found, abs(answer.value)], 0
         return tuple(found)
@@ -154,24 +159,24 @@ class BoltWatch:
         return f"{words} (limit {100 * self.table.tolerance:g} %); once more", False
 
     def _one(
-        self, target: float, at: "tuple[int, Tester]", watcher: Watcher, record: Record
-    ) -> Reading | Command:
+        self, target: float, at: "tuple[int, Tester]", desk: SessionDesk, record: Record
+    ) -> Reading | BoltChoice:
         """Return the torque of one bolt, or what the operator wants instead."""
         number, tester = at
         hold, until = PeakHold(target), self.now() + self.wait
         while self.now() < until:
-            reading = tester.read(watcher, NONSENSE * target)
+            reading = tester.read(desk, NONSENSE * target)
             done = None if reading is None else hold.feed(reading)
             if done is not None:
                 return done
             self.sleep(_RETRY if reading is None else self.table.poll)
-            said = watcher.command()
-            if said is Command.ACCEPT and hold.top is not None:
+            choice = _bolt_choice(desk, begun=hold.top is not None)
+            if choice is BoltChoice.TAKE and hold.top is not None:
                 return hold.top
-            if said is Command.QUIT or record.interrupted:
-                return Command.QUIT
-            if said is Command.UNDO:
-                return said
+            if choice is BoltChoice.QUIT or record.interrupted:
+                return BoltChoice.QUIT
+            if choice is BoltChoice.BACK:
+                return choice
         trouble = f": {tester.trouble}" if tester.trouble else ""
         raise InstrumentError(
             f"bolt {number} was not tightened within {self.wait:g} s{trouble}; what "
@@ -194,11 +199,11 @@ class Tester:
     trouble: str = ""
     _line: SerialLine | None = None
 
-    def read(self, watcher: Watcher, most: float) -> Reading | None:
+    def read(self, desk: SessionDesk, most: float) -> Reading | None:
         """Return the reading, None where it cannot be read, which is reported once.
 
         Args:
-            watcher: receives the messages.
+            desk: logs the messages.
             most: beyond which no reading is believed [N m].
         """
         try:
@@ -208,12 +213,12 @@ class Tester:
             reading = _believable(read_torque(self.instrument, self._line), most)
         except (InstrumentError, FormatError) as error:
             if str(error) != self.trouble:
-                watcher.say(f"torque tester: {error}; waiting for it")
+                desk.say(f"torque tester: {error}; waiting for it")
             self.trouble = str(error)
             self.close()
             return None
         if self.trouble:
-            watcher.say("torque tester: it is back")
+            desk.say("torque tester: it is back")
         self.trouble = ""
         return reading
 
@@ -243,9 +248,25 @@ def _believable(reading: Reading, most: float) -> Reading:
     return reading
 
 
-def _entry(
-    reading: Reading, number: int, target: float, *, kept: bool
-) -> dict[str, object]:
-    return to_entry(
-        BoltRead(number, target, abs(reading.value), kept=kept, raw=reading.raw)
-    )
+def _bolt_choice(desk: SessionDesk, *, begun: bool) -> BoltChoice | None:
+    """Return what the operator wants of the bolt, and answer the command."""
+    ticket = desk.next_command()
+    choice: BoltChoice | None = None
+    match None if ticket is None else ticket.command:
+        case None:
+            return None
+        case AcceptHit() if begun:
+            choice, words = BoltChoice.TAKE, "the reading is taken as it is"
+        case UndoVerdict():
+            choice, words = BoltChoice.BACK, "back to the bolt before"
+        case QuitSession(confirmed=True):
+            choice, words = BoltChoice.QUIT, "the session ends"
+        case _:
+            words = "bolts are tightened now; accept, undo or quit yes"
+    assert ticket is not None
+    desk.answer(ticket, words, done=choice is not None)
+    return choice
+
+
+def _bolt_read(reading: Reading, number: int, target: float, *, kept: bool) -> BoltRead:
+    return BoltRead(number, target, abs(reading.value), kept=kept, raw=reading.raw)

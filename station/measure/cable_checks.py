@@ -4,8 +4,7 @@
 from dataclasses import dataclass, field
 
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
-from jointbench.station.measure.observer import Watcher
-from jointbench.station.session_events.event_codec import to_entry
+from jointbench.station.measure.session_desk import SessionDesk
 from jointbench.station.session_events.flow_events import CableChanged
 
 LOOK_AT_CABLES = 1.0  # [s] of signal between looks at the sensor loops
@@ -16,13 +15,13 @@ class CableWatch:
     """Check the sensor loops periodically, and report changes.
 
     Attributes:
-        recorder: that knows the device, and logs a change.
-        watcher: receives the messages.
+        recorder: that knows the device.
+        desk: logs a change and the messages.
         open: channels whose loop is open.
     """
 
     recorder: RecorderProcess
-    watcher: Watcher
+    desk: SessionDesk
     open: tuple[str, ...] = field(default=())
     _since: int = 0
 
@@ -41,8 +40,8 @@ class CableWatch:
             return False
         self.open = found
         words = ", ".join(found)
-        self.recorder.log(to_entry(CableChanged(words or "all closed again")))
-        self.watcher.say(
+        self.desk.write(CableChanged(words or "all closed again"))
+        self.desk.say(
             f"sensor loop open: {words}; hits wait until the cable is back"
             if found
             else "sensors are back"

@@ -11,6 +11,7 @@ from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.driver_answers import ConnectionLost
 from jointbench.station.measure.observer import BenchOperator, Operator
 from jointbench.station.measure.plan import Condition
+from jointbench.station.screen.terminal import working
 
 REMOTE = "ni+grpc://"
 
@@ -91,7 +92,8 @@ def open_chassis(url: str) -> Iterator[OpenChassis]:
 def _driver(address: str | None, name: str) -> Iterator[OpenChassis]:
     chassis = Chassis(address)
     try:
-        modules = chassis.modules()
+        with working(f"connecting to {name}"):
+            modules = chassis.modules()
         simulated = bool(modules) and all(module.simulated for module in modules)
         # NI's own simulated devices cannot strike; the first request shows that.
         operator: Operator = (

@@ -1,24 +1,34 @@
 # SPDX-License-Identifier: MIT
 """What hits mean for the plan: verdict, average, next hit, next point, and back."""
 
-from jointbench.acquisition.records.recordings import Hit, Verdict
+from dataclasses import asdict
+
+from jointbench.acquisition.file_access.quoting import shown
+from jointbench.acquisition.records.recordings import Verdict
 from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.further_hits import further_hits
 from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.measure.asking import Asker
 from jointbench.station.measure.bench_checks import CheckBook
 from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.hit_ledger import HitLedger
-from jointbench.station.measure.observer import Command, HitNews
+from jointbench.station.measure.hit_sketch import hit_averaged
 from jointbench.station.measure.route import Route
 from jointbench.station.measure.running_average import (
     GrowingAverage,
     mean_coherence,
     weak_force,
 )
-from jointbench.station.measure.session_log import check_entry, run_entry
+from jointbench.station.measure.session_log import run_begun
 from jointbench.station.measure.session_record import Record
+from jointbench.station.measure.stored_cut import Cut
 from jointbench.station.measure.trial_hits import Trials
 from jointbench.station.measure.trigger import TriggerWatch
+from jointbench.station.session_events.command_queue import CommandRefused
+from jointbench.station.session_events.hit_events import CheckDone, GainForecast
+
+_MORE = 2
+"""Further hits that a forecast is made for."""
 
 
 class Points:
@@ -29,7 +39,7 @@ class Points:
     ) -> None:
         self._bench, self._record, self._trigger = bench, record, trigger
         self._route = Route(bench, record)
-        self._ledger = HitLedger(bench.recorder, record)
+        self._ledger = HitLedger(bench.desk, bench.recorder, record)
         self._asker = Asker(bench, self._route, trigger)
         self._book = CheckBook(bench.channels)
         self._trials = Trials(bench, record, trigger)
@@ -41,6 +51,11 @@ class Points:
     def over(self) -> bool:
         """Whether all conditions are done."""
         return self._route.over
+
+    @property
+    def planned(self) -> int:
+        """How many conditions there are."""
+        return self._route.planned
 
     @property
     def on_trial(self) -> bool:
@@ -60,7 +75,8 @@ class Points:
         if self._trials.over and bench.hardware_trigger:
             bench.recorder.trigger_by(self._trigger.on_the_device())
             self._trigger.break_off(bench.recorder.samples)
-        bench.recorder.log(run_entry(condition, trial=self.on_trial))
+        self._ledger.keep(self._route.kept)
+        bench.desk.write(run_begun(condition, trial=self.on_trial))
         self._asker.ask()
 
     def take(self, cut: CutHit) -> None:
@@ -70,7 +86,7 @@ class Points:
         least = weak_force(condition.level, good, self._elsewhere())
         hit = self._trigger.judge(cut, condition.point, least)
         if self.on_trial:
-            self._ledger.enter(self._trials.take(cut, hit), cut, None)
+            self._ledger.enter(self._trials.take(cut, hit), None)
             self._trials.show(cut)
             if self.on_trial:
                 self._asker.ask()
@@ -78,11 +94,10 @@ class Points:
                 self._trials.settle()
                 self.begin()
             return
-        self._ledger.enter(hit, cut, condition.number)
+        self._ledger.enter(hit, condition.number)
         if hit.verdict is Verdict.OK:
             self._weed(condition.number)
-        last = self._ledger.last
-        self._go_on(cut, hit if last is None else last.hit)
+        self._go_on(cut)
 
     def _elsewhere(self) -> list[float]:
         """Return the peaks of trial hits and of good hits at any condition [N]."""
@@ -96,74 +111,163 @@ class Points:
         )
         if spoiler is not None:
             index = self._ledger.take_out(number, spoiler)
-            self._bench.watcher.say(f"hit {index + 1} is taken out: {spoiler.reason}")
+            self._bench.desk.say(f"hit {index + 1} is taken out: {spoiler.reason}")
 
-    def obey(self, command: Command) -> None:
-        """Do what the operator said."""
-        watcher, condition = self._bench.watcher, self._route.condition
-        if command is Command.QUIT:
-            self._record.interrupted = True
-        elif self.on_trial:
-            watcher.say(f"{command.value}: these are trial hits, in no average")
-        elif command is Command.NEXT:
-            good = self._ledger.good(condition.number)
-            short = len(good) < self._bench.plan.hits.repeats
-            self._finish(self._average.frf(good), given_up=short)
-        elif command is Command.REPEAT:
-            if not self._ledger.any(condition.number):
-                self._route.back()
-            condition = self._route.condition
-            count = self._ledger.set_aside(condition.number)
-            watcher.say(f"{condition.name} again, {count} hits set aside")
-            self._trigger.break_off()
-            self.begin()
-        else:
-            self._judge_last(command)
+    def judge(self, number: int | None, *, accept: bool) -> str:
+        """Accept or reject a hit; where the last one ended a point, go back to it.
 
-    def _judge_last(self, command: Command) -> None:
-        """Accept, reject or undo; where the point was left, go back to it."""
-        last = self._ledger.obey(command)
+        Args:
+            number: of the hit from 1, None for the last one.
+            accept: True to accept it.
+
+        Returns:
+            What was done.
+
+        Raises:
+            CommandRefused: there is no such hit, or it is a trial hit.
+        """
+        struck_last = self._ledger.struck_last
+        index = struck_last if number is None else number - 1
+        condition = self._condition_of(index)
+        wanted = Verdict.OK if accept else Verdict.OPERATOR
+        if self._record.hits[index].verdict is wanted:
+            raise CommandRefused(f"hit {index + 1} has the verdict {wanted.value}")
+        self._ledger.judge(index, accept=accept)
+        words = f"hit {index + 1} is {'accepted' if accept else 'rejected'}"
+        if index == struck_last:
+            self._return_to(condition)
+        elif condition == self._route.condition.number:
+            self._go_on(None)
+        elif self._ledger.count_good(condition) < self._bench.plan.hits.repeats:
+            self._route.reopen(condition)
+            words += ", its point needs one more"
+        return words
+
+    def undo(self) -> str:
+        """Undo the last decision on the last hit; return what was done.
+
+        Raises:
+            CommandRefused: there is no hit yet.
+        """
+        last = self._ledger.last
         if last is None:
-            self._bench.watcher.say(f"{command.value}: there is no hit yet")
-            return
-        if last.condition != self._route.condition.number:
-            self._route.back()
-            self.begin()
-        self._go_on(last.cut, last.hit)
+            raise CommandRefused("there is no hit to undo")
+        self._ledger.undo(last)
+        self._return_to(last.condition)
+        return f"hit {last.index + 1} is {self._record.hits[last.index].verdict.value}"
 
-    def _go_on(self, cut: CutHit, hit: Hit) -> None:
-        """Show the last hit, and ask for the next or go to the next condition."""
+    def leave(self) -> str:
+        """Go to the next point; return what was done."""
+        condition = self._route.condition
+        good = self._ledger.good(condition.number)
+        short = len(good) < self._bench.plan.hits.repeats
+        self._finish(self._average.frf(good), given_up=short)
+        return f"{condition.name} {'is left incomplete' if short else 'is done'}"
+
+    def repeat(self) -> str:
+        """Set the hits of the point aside and ask for it again; return it in words."""
+        if not self._ledger.any(self._route.condition.number):
+            self._route.back()
+            self._ledger.keep(self._route.kept)
+        condition = self._route.condition
+        count = self._ledger.set_aside(condition.number)
+        self.restart()
+        return f"{condition.name} again, {count} hits set aside"
+
+    def go_to(self, point: str) -> str:
+        """Go to a point of the plan; return what was done.
+
+        Raises:
+            CommandRefused: the plan has no such point.
+        """
+        number = self._route.at_point(point)
+        if number is None:
+            points = ", ".join(self._route.points)
+            raise CommandRefused(
+                f"the plan has no point {shown(point)}; it has {points}"
+            )
+        self._route.go_to(number)
+        self.restart()
+        return f"{self._route.condition.name} is next"
+
+    def restart(self) -> None:
+        """Begin a recording again, after a pause or at another point."""
+        self._trigger.break_off()
+        if not self._route.over:
+            self.begin()
+
+    def _condition_of(self, index: int) -> int:
+        count = len(self._record.hits)
+        if index < 0 and not count:
+            raise CommandRefused("there is no hit yet")
+        if not 0 <= index < count:
+            raise CommandRefused(f"there is no hit {index + 1}; {count} were struck")
+        condition = self._ledger.condition_of(index)
+        if condition is None:
+            raise CommandRefused(f"hit {index + 1} is a trial hit, in no average")
+        return condition
+
+    def _return_to(self, condition: int) -> None:
+        """Show the last hit again; where its point was left, go back to it."""
+        if condition != self._route.condition.number:
+            self._route.go_to(condition)
+            self.begin()
+        last = self._ledger.last
+        self._go_on(None if last is None else last.cut)
+
+    def _go_on(self, cut: Cut | None) -> None:
+        """Show the last hit, if any, and ask for the next or go to the next point."""
         hits, condition = self._bench.plan.hits, self._route.condition
         good = self._ledger.good(condition.number)
         frf = self._average.frf(good)
         coherence = mean_coherence(frf)
-        number, count = len(self._record.hits), len(good)
-        self._bench.watcher.hit(
-            HitNews(number, cut, hit, condition, count, hits.repeats, frf, coherence)
-        )
+        count = len(good)
+        if cut is not None:
+            self._show(cut, frf, count)
         agreed = coherence is None or coherence >= hits.coherence
         most = hits.most_repeats or 2 * hits.repeats
         if count >= most or (count >= hits.repeats and agreed):
             if not agreed:
-                self._bench.watcher.say(
+                self._bench.desk.warn(
                     f"{condition.name}: coherence stays at {coherence:.3f} after "
                     f"{count} hits (limit {hits.coherence:g})"
                 )
             self._finish(frf, given_up=not agreed)
         elif self._ledger.bad(condition.number) >= hits.most_rejected:
-            self._bench.watcher.say(f"{condition.name}: given up, too many bad hits")
+            self._bench.desk.warn(f"{condition.name}: given up, too many bad hits")
             self._finish(frf, given_up=True)
         else:
             self._asker.ask()
+
+    def _show(self, cut: Cut, frf: Frf | None, count: int) -> None:
+        bench = self._bench
+        bench.desk.write(
+            hit_averaged(
+                self._ledger.last.index if self._ledger.last else 0,
+                (count, bench.plan.hits.repeats),
+                cut,
+                frf,
+                channels=bench.channels,
+                sample_rate=bench.recorder.sample_rate,
+            )
+        )
+
+        forecast = () if frf is None else further_hits(frf, more=_MORE)
+        if forecast:
+            hit = self._ledger.last.index if self._ledger.last else 0
+            peaks = [asdict(peak) for peak in forecast]
+            bench.desk.write(GainForecast(hit, _MORE, peaks))
 
     def _finish(self, frf: Frf | None, *, given_up: bool) -> None:
         """Check what can be checked, and go to the next condition."""
         if frf is not None:
             for check in self._book.enter(self._route.condition, frf):
                 self._record.checks.append(check)
-                self._bench.recorder.log(check_entry(check))
+                self._bench.desk.write(
+                    CheckDone(check.name, check.value, check.limit, check.passed)
+                )
                 if not check.passed:
-                    self._bench.watcher.say(f"check {check.name}: {check.words}")
+                    self._bench.desk.warn(f"check {check.name}: {check.words}")
         self._route.advance(given_up=given_up)
         if not self._route.over:
             self.begin()

@@ -6,8 +6,8 @@ from dataclasses import replace
 from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.plan import Condition, conditions
 from jointbench.station.measure.session_record import Record
-from jointbench.station.session_events.event_codec import to_entry
 from jointbench.station.session_events.flow_events import ConditionDone
+from jointbench.station.session_events.operator_events import ConditionReopened
 
 
 class Route:
@@ -16,6 +16,8 @@ class Route:
     def __init__(self, bench: BenchParts, record: Record) -> None:
         self._bench, self._record = bench, record
         self._conditions = conditions(bench.plan)
+        self._at = 0
+        self._before: int | None = None
         self._tight: float | None = None
         self._mean: float | None = None
 
@@ -35,9 +37,14 @@ class Route:
         return self._record.done == self.planned
 
     @property
+    def kept(self) -> tuple[int, int]:
+        """Numbers of the present condition and the one before it."""
+        return self._at, self._at if self._before is None else self._before
+
+    @property
     def condition(self) -> Condition:
         """The present one, with the torque that its bolts were found to have."""
-        planned = self._conditions[self._record.done]
+        planned = self._conditions[self._at]
         joint = self._bench.plan.table.joint
         if self._mean is None or joint is None:
             return planned
@@ -45,18 +52,48 @@ class Route:
         return replace(planned, tightened=self._mean, preload=preload)
 
     def advance(self, *, given_up: bool) -> None:
-        """Leave the present condition for the next one."""
+        """Leave the present condition for the next one that is open."""
         if given_up:
             self._record.incomplete.append(self.condition.name)
-        done = ConditionDone(self.condition.name, given_up)
-        self._bench.recorder.log(to_entry(done))
-        self._record.done += 1
+        self._bench.desk.write(ConditionDone(self.condition.name, given_up))
+        self._record.finished.add(self._at)
+        following = [*range(self._at + 1, self.planned), *range(self._at)]
+        left = [n for n in following if n not in self._record.finished]
+        self._before = self._at
+        self._at = left[0] if left else self._at
 
     def back(self) -> None:
         """Go back to the condition before; the first one stays."""
-        self._record.done = max(0, self._record.done - 1)
-        name = self.condition.name
+        self.go_to(self._at if self._before is None else self._before)
+
+    def go_to(self, number: int) -> None:
+        """Go to a condition; one that was over is open again."""
+        self.reopen(number)
+        if number != self._at:
+            self._before, self._at = self._at, number
+
+    def reopen(self, number: int) -> None:
+        """Take note that a condition needs hits, if it was over."""
+        if number not in self._record.finished:
+            return
+        name = self._conditions[number].name
+        self._record.finished.discard(number)
         self._record.incomplete[:] = [n for n in self._record.incomplete if n != name]
+        self._bench.desk.write(ConditionReopened(name))
+
+    def at_point(self, point: str) -> int | None:
+        """Return the condition of a point at the present torque and level, if any."""
+        now = self._conditions[self._at]
+        same = (c for c in self._conditions if c.point == point)
+        near = sorted(
+            same, key=lambda c: (c.torque != now.torque, c.level != now.level)
+        )
+        return near[0].number if near else None
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Points of the plan."""
+        return tuple(dict.fromkeys(c.point for c in self._conditions))
 
     def tighten(self) -> bool:
         """See to it that the bolts have the torque of the present condition.
@@ -69,7 +106,7 @@ class Route:
         Raises:
             InstrumentError: the torque tester, or the chassis, does not answer.
         """
-        bench, target = self._bench, self._conditions[self._record.done].torque
+        bench, target = self._bench, self._conditions[self._at].torque
         if bench.bolts is None or target is None or target == self._tight:
             return False
         bench.recorder.pause()

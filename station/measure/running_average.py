@@ -8,18 +8,24 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, NoHitFound
 from jointbench.acquisition.records.recordings import Channel, Hit, Recording, Verdict
-from jointbench.signal.frf.coherence_without import coherence_without, typical_coherence
+from jointbench.signal.frf.coherence_without import (
+    coherence_of_others,
+    typical_coherence,
+)
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
     hit_spectra,
-    join_spectra,
     require_alive,
 )
 from jointbench.signal.hits.hit_verdicts import HitLimits
-from jointbench.signal.hits.live_hits import CutHit
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
-from jointbench.station.measure.running_sums import RunningSums
+from jointbench.station.measure.running_sums import (
+    MOST_KEPT,
+    KeptSpectra,
+    RunningSums,
+)
+from jointbench.station.measure.stored_cut import Cut
 
 _ELSEWHERE = 0.5  # a slender point is struck more softly than the others
 _ENOUGH = 3  # hits from which a single outlier can be recognised
@@ -34,7 +40,7 @@ class Accepted:
         hit: as judged.
     """
 
-    cut: CutHit
+    cut: Cut
     hit: Hit
 
 
@@ -53,36 +59,31 @@ class Spoiler:
     reason: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Transformed:
-    """A hit, and what became of it under one window and length."""
-
-    recording: Recording
-    own: HammerWindow
-    window: HammerWindow | None = None
-    spectra: HitSpectra | None = None
-
-
 class GrowingAverage:
-    """The average of the hits of one condition.
+    """The average of the hits of one condition, by their sums.
 
-    A hit is transformed when it comes. Those before it are transformed again only
-    where it asks for a wider window or a shorter block than they had.
+    A hit is transformed when it comes. Those before it are transformed again, from the
+    samples in the file, where it asks for a wider window or a shorter block than they
+    had. The memory does not depend on the number of hits.
     """
 
-    def __init__(self, channels: Sequence[Channel], sample_rate: float) -> None:
+    def __init__(
+        self, channels: Sequence[Channel], sample_rate: float, *, kept: int = MOST_KEPT
+    ) -> None:
         """Begin without a hit.
 
         Args:
             channels: of the rows of every hit.
             sample_rate: [Hz].
+            kept: size of the spectra that are not transformed again [bytes].
         """
         self._channels, self._rate = tuple(channels), sample_rate
-        self._kept: dict[CutHit, _Transformed] = {}
         self._length = 0
+        self._windows: dict[Cut, HammerWindow] = {}
         self._sums: RunningSums | None = None
-        self._summed: dict[CutHit, HitSpectra] = {}
-        self._last: tuple[tuple[CutHit, ...], Frf | None] = ((), None)
+        self._summed: dict[Cut, Accepted] = {}
+        self._spectra = KeptSpectra(kept)
+        self._last: tuple[tuple[Cut, ...], Frf | None] = ((), None)
 
     def frf(self, accepted: Sequence[Accepted]) -> Frf | None:
         """Return the FRF of hits, None where they give none."""
@@ -110,7 +111,7 @@ class GrowingAverage:
         together = mean_coherence(self.frf(accepted))
         if together is None or together >= wanted:
             return None
-        without = coherence_without(self._spectra(accepted))
+        without = self._without_each(accepted)
         position = int(np.argmax(without))
         if without[position] < wanted:
             return None
@@ -123,78 +124,88 @@ class GrowingAverage:
 
     def _averaged(self, accepted: Sequence[Accepted]) -> Frf | None:
         try:
-            window = self._transform(accepted)
+            return self._summed_up(accepted).frf()
         except BadData:
             return None
-        return self._summed_up(window).frf()
 
-    def _summed_up(self, window: HammerWindow) -> RunningSums:
-        """Return the sums over the kept hits; only those that changed are touched."""
-        wanted = {c: h.spectra for c, h in self._kept.items() if h.spectra is not None}
-        sums, summed = self._sums, self._summed
-        # Under another window or length each hit has other spectra.
-        same = all(wanted.get(cut, own) is own for cut, own in summed.items())
-        same &= not summed.keys().isdisjoint(wanted)
-        if sums is None or sums.window != window or not same:
-            first, summed = next(iter(wanted)), {}
-            sums = RunningSums(wanted[first], window)
-            summed[first] = wanted[first]
-        for cut in [cut for cut in summed if cut not in wanted]:
-            sums.take_out(summed.pop(cut))
-        for cut, own in wanted.items():
-            if cut not in summed:
-                sums.add(own)
-                summed[cut] = own
-        self._sums, self._summed = sums, summed
-        return sums
+    def _without_each(self, accepted: Sequence[Accepted]) -> list[float]:
+        """Return the coherence without each hit in turn [-]."""
+        sums = self._summed_up(accepted)
+        totals, found = sums.totals(), []
+        for each in accepted:
+            own = self._transformed(each, sums.window)
+            force, response = own.force[0], own.response[0]
+            found.append(coherence_of_others(totals, force, response, sums.frequency))
+        return found
 
-    def _transform(self, accepted: Sequence[Accepted]) -> HammerWindow:
-        """Transform hits under the one window that serves them all, and keep them.
+    def _summed_up(self, accepted: Sequence[Accepted]) -> RunningSums:
+        """Return the sums over hits; only those that changed are touched.
 
         Raises:
             NoHitFound: there are none.
             ChannelMissing: a response saw nothing of a hit.
         """
+        window = self._window(accepted)
+        wanted = {each.cut: each for each in accepted}
+        sums = self._sums
+        if (
+            sums is None
+            or sums.window != window
+            or self._summed.keys().isdisjoint(wanted)
+        ):
+            # Under another window or length each hit has other spectra.
+            self._spectra.clear()
+            sums = RunningSums(self._transformed(accepted[0], window), window)
+            self._sums, self._summed = sums, {accepted[0].cut: accepted[0]}
+        for cut in [cut for cut in self._summed if cut not in wanted]:
+            sums.take_out(self._transformed(self._summed.pop(cut), window))
+            self._spectra.drop(cut)
+        for cut, each in wanted.items():
+            if cut not in self._summed:
+                sums.add(self._transformed(each, window))
+                self._summed[cut] = each
+        return sums
+
+    def _window(self, accepted: Sequence[Accepted]) -> HammerWindow:
+        """Return the one window that serves all hits."""
         if not accepted:
             raise NoHitFound("there are no hits yet; strike one")
-        length = min(each.cut.samples.shape[1] for each in accepted)
-        kept = self._kept if length == self._length else {}
-        self._length = length
-        self._kept = {
-            each.cut: kept.get(each.cut) or self._cut(each, length) for each in accepted
+        length = min(each.cut.count for each in accepted)
+        if length != self._length:
+            self._length, self._windows, self._sums = length, {}, None
+        self._windows = {
+            each.cut: self._windows.get(each.cut) or self._own_window(each)
+            for each in accepted
         }
-        window = join_windows([hit.own for hit in self._kept.values()])
-        self._kept = {cut: _under(hit, window) for cut, hit in self._kept.items()}
-        return window
+        return join_windows(list(self._windows.values()))
 
-    def _spectra(self, accepted: Sequence[Accepted]) -> HitSpectra:
-        """Return the spectra of hits; see `_transform`."""
-        self._transform(accepted)
-        parts = [hit.spectra for hit in self._kept.values()]
-        return join_spectra([part for part in parts if part is not None])
+    def _own_window(self, accepted: Accepted) -> HammerWindow:
+        recording = self._recording(accepted)
+        require_alive(recording, recording.hits[0])
+        # Its words would differ for every hit.
+        return replace(choose_window(recording), reason="")
 
-    def _cut(self, accepted: Accepted, length: int) -> _Transformed:
-        trigger = accepted.cut.trigger
-        hit = replace(
-            accepted.hit, start=0, trigger=trigger, stop=length, verdict=Verdict.OK
+    def _transformed(self, accepted: Accepted, window: HammerWindow) -> HitSpectra:
+        return self._spectra.get(
+            accepted.cut, lambda: hit_spectra([self._recording(accepted)], window)
         )
-        recording = Recording(
+
+    def _recording(self, accepted: Accepted) -> Recording:
+        """Return a hit as a recording, cut to the common length."""
+        hit = replace(
+            accepted.hit,
+            start=0,
+            trigger=accepted.cut.trigger,
+            stop=self._length,
+            verdict=Verdict.OK,
+        )
+        return Recording(
             "average",
-            accepted.cut.samples[:, :length],
+            accepted.cut.samples[:, : self._length],
             self._rate,
             self._channels,
             hits=(hit,),
         )
-        require_alive(recording, hit)
-        # Its words would differ for every hit.
-        return _Transformed(recording, replace(choose_window(recording), reason=""))
-
-
-def _under(hit: _Transformed, window: HammerWindow) -> _Transformed:
-    """Return a hit transformed under a window, which it may be already."""
-    if hit.window == window:
-        return hit
-    return replace(hit, window=window, spectra=hit_spectra([hit.recording], window))
 
 
 def mean_coherence(frf: Frf | None) -> float | None:

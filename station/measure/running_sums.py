@@ -1,13 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Sums over the hits of one point: a hit is added or taken out in constant time."""
+"""Sums over the hits of one point, and the spectra of those that were used last.
+
+A hit is added or taken out in constant time.
+"""
+
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.frf.coherence_without import HitSums
 from jointbench.signal.frf.estimators import pair_of_sums
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.frf import KIND_OF_RESPONSE, Frf
 from jointbench.signal.hits.hit_spectra import HitSpectra
 from jointbench.signal.hits.windows import HammerWindow
+from jointbench.station.measure.stored_cut import Cut
+
+MOST_KEPT = 2**25
+"""Size of the spectra that are kept [bytes]: 50 hits of four channels and half a second
+at 51.2 kS/s. Transforming a further one again takes some milliseconds."""
 
 
 class RunningSums:
@@ -42,6 +56,15 @@ class RunningSums:
         """Take a hit out that was added."""
         self._change(spectra, -1)
 
+    @property
+    def frequency(self) -> FloatArray:
+        """Frequency of the lines [Hz]."""
+        return self._frequency
+
+    def totals(self) -> HitSums:
+        """Return the sums over all hits."""
+        return HitSums(self._force, self._power, self._cross)
+
     def frf(self) -> Frf:
         """Return the average as H1, with coherence and variance from two hits on."""
         force = np.maximum(self._force, 0.0)
@@ -74,3 +97,46 @@ class RunningSums:
         self._force += sign * np.abs(force) ** 2
         self._power += sign * np.abs(response) ** 2
         self._cross += sign * (response * force.conj())
+
+
+@dataclass(slots=True)
+class KeptSpectra:
+    """Spectra of hits under one window; the one used longest ago is dropped first.
+
+    Attributes:
+        most: size of what is kept [bytes].
+    """
+
+    most: int = MOST_KEPT
+    _kept: OrderedDict[Cut, HitSpectra] = field(default_factory=OrderedDict)
+    _size: int = 0
+
+    def get(self, cut: Cut, transform: Callable[[], HitSpectra]) -> HitSpectra:
+        """Return the spectra of a hit.
+
+        Args:
+            cut: of the hit.
+            transform: makes them where they are not kept.
+        """
+        if cut in self._kept:
+            self._kept.move_to_end(cut)
+            return self._kept[cut]
+        found = self._kept[cut] = transform()
+        self._size += _size(found)
+        while self._size > self.most and len(self._kept) > 1:
+            self._size -= _size(self._kept.popitem(last=False)[1])
+        return found
+
+    def drop(self, cut: Cut) -> None:
+        """Forget a hit."""
+        found = self._kept.pop(cut, None)
+        self._size -= 0 if found is None else _size(found)
+
+    def clear(self) -> None:
+        """Forget all."""
+        self._kept.clear()
+        self._size = 0
+
+
+def _size(spectra: HitSpectra) -> int:
+    return spectra.force.nbytes + spectra.response.nbytes

@@ -9,6 +9,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.ni.stream import Block, StreamGap
 from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.cable_checks import CableWatch
+from jointbench.station.measure.operator_commands import OperatorCommands
 from jointbench.station.measure.points import Points
 from jointbench.station.measure.session_log import gap_words
 from jointbench.station.measure.session_record import Record
@@ -25,7 +26,10 @@ class MeasureSession:
             bench.plan.hits, bench.channels, bench.recorder.sample_rate
         )
         self._points = Points(bench, self.record, self._trigger)
-        self._cables = CableWatch(bench.recorder, bench.watcher)
+        self._cables = CableWatch(bench.recorder, bench.desk)
+        self._commands = OperatorCommands(
+            bench, self.record, self._points, self._trigger
+        )
 
     def run(self) -> None:
         """Measure until the plan is done.
@@ -42,22 +46,22 @@ class MeasureSession:
                 self._gap(item)
             elif isinstance(item, Block):
                 self._block(item.samples)
-            else:
+            elif not self._commands.paused:
                 self._points.wait(item.samples)
-            command = self._bench.watcher.command()
-            if command is not None and not self._points.over:
-                self._points.obey(command)
+            if not self._points.over:
+                self._commands.obey()
             if self.record.interrupted or self._points.over:
                 return
         self.record.interrupted = True
 
     def _block(self, samples: FloatArray) -> None:
-        self._bench.watcher.block(samples)
+        self._bench.desk.samples(samples)
         if self._cables.look(samples.shape[1]):
             self._trigger.break_off()
             if self._trigger.armed and not self._cables.open:
                 self._points.ask()
-        self._hear(samples)
+        if not self._commands.paused:
+            self._hear(samples)
 
     def _hear(self, samples: FloatArray) -> None:
         if not self._trigger.armed:
@@ -75,9 +79,10 @@ class MeasureSession:
     def _gap(self, gap: StreamGap) -> None:
         """Note what is missing; a hit cut short by it is late, and asked for again."""
         self.record.gaps.append(gap)
-        self._bench.watcher.say(gap_words(gap))
+        self._bench.desk.gap()
+        self._bench.desk.warn(gap_words(gap))
         cut = self._trigger.break_off()
         if cut is not None and not self._points.on_trial:
             self._points.take(cut)
-        elif self._trigger.armed and gap.kind != "lost":
+        elif self._trigger.armed and not self._commands.paused and gap.kind != "lost":
             self._points.ask()

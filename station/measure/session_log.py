@@ -1,64 +1,76 @@
 # SPDX-License-Identifier: MIT
-"""The log of a session: what each kind of entry says."""
+"""Events of a measurement, made from its records."""
+
+from collections.abc import Sequence
 
 from jointbench.acquisition.ni.stream import StreamGap
-from jointbench.acquisition.records.recordings import Hit
-from jointbench.station.measure.bench_checks import Check
-from jointbench.station.measure.plan import Condition
-from jointbench.station.measure.trial_settings import Proposal
-from jointbench.station.session_events.event_codec import to_entry
+from jointbench.acquisition.records.recordings import Channel, Hit, Quantity
+from jointbench.station.measure.plan import Condition, MeasurePlan, conditions
 from jointbench.station.session_events.flow_events import RunBegun
-from jointbench.station.session_events.hit_events import (
-    CheckDone,
-    HitJudged,
-    SettingProposed,
-    VerdictChanged,
-)
-
-Entry = dict[str, object]
+from jointbench.station.session_events.hit_events import HitJudged, VerdictChanged
+from jointbench.station.session_events.view_events import SessionBegun
 
 
-def run_entry(condition: Condition, *, trial: bool) -> Entry:
-    """Return the entry that begins a recording of its own."""
+def run_begun(condition: Condition, *, trial: bool) -> RunBegun:
+    """Return the event that begins a recording of its own."""
     torque = condition.torque if condition.tightened is None else condition.tightened
-    return to_entry(
-        RunBegun(
-            name="trial" if trial else condition.name,
-            purpose="trial" if trial else "measurement",
-            point=condition.point,
-            torque=torque,
-            preload=condition.preload,
-            level=condition.level,
-        )
+    return RunBegun(
+        name="trial" if trial else condition.name,
+        purpose="trial" if trial else "measurement",
+        point=condition.point,
+        torque=torque,
+        preload=condition.preload,
+        level=condition.level,
     )
 
 
-def hit_entry(hit: Hit, *, number: int, new: bool) -> Entry:
-    """Return the entry of a hit, or of a verdict that replaces an earlier one."""
+def hit_judged(hit: Hit, *, number: int, new: bool) -> HitJudged:
+    """Return the event of a hit, or of a verdict that replaces an earlier one."""
     kind = HitJudged if new else VerdictChanged
-    return to_entry(
-        kind(
-            number=number,
-            start=hit.start,
-            trigger=hit.trigger,
-            stop=hit.stop,
-            point=hit.point,
-            peak_force=hit.peak_force,
-            verdict=hit.verdict.value,
-            measure=hit.measure,
-            reason=hit.reason,
-        )
+    return kind(
+        number=number,
+        start=hit.start,
+        trigger=hit.trigger,
+        stop=hit.stop,
+        point=hit.point,
+        peak_force=hit.peak_force,
+        verdict=hit.verdict.value,
+        measure=hit.measure,
+        reason=hit.reason,
     )
 
 
-def setting_entry(proposal: Proposal) -> Entry:
-    """Return the entry of a setting that trial hits proposed."""
-    return to_entry(SettingProposed(proposal.name, proposal.value, proposal.reason))
+def session_begun(
+    plan: MeasurePlan,
+    channels: Sequence[Channel],
+    *,
+    source: str,
+    simulated: bool,
+    sample_rate: float,
+) -> SessionBegun:
+    """Return the event that states what is known before the first sample.
 
-
-def check_entry(check: Check) -> Entry:
-    """Return the entry of a check on the part."""
-    return to_entry(CheckDone(check.name, check.value, check.limit, check.passed))
+    Args:
+        plan: what is measured.
+        channels: of the stream.
+        source: URL of the chassis.
+        simulated: whether it is a simulation.
+        sample_rate: of the device [Hz].
+    """
+    hammer = next(c for c in channels if c.quantity is Quantity.FORCE)
+    return SessionBegun(
+        operator=plan.table.operator,
+        source=source,
+        simulated=simulated,
+        sample_rate=sample_rate,
+        direction=hammer.direction,
+        repeats=plan.hits.repeats,
+        channels=[{"name": c.name, "range": c.range} for c in channels],
+        conditions=[
+            {"name": c.name, "point": c.point, "torque": c.torque, "level": c.level}
+            for c in conditions(plan)
+        ],
+    )
 
 
 def gap_words(gap: StreamGap) -> str:

@@ -19,7 +19,7 @@ class Record:
         proposals: of the trial hits.
         checks: driving points and reciprocity.
         incomplete: names of the conditions that were given up.
-        done: conditions that are over.
+        finished: numbers of the conditions that are over.
         interrupted: whether the operator ended it.
     """
 
@@ -28,5 +28,10 @@ class Record:
     proposals: tuple[Proposal, ...] = ()
     checks: list[Check] = field(default_factory=list)
     incomplete: list[str] = field(default_factory=list)
-    done: int = 0
+    finished: set[int] = field(default_factory=set)
     interrupted: bool = False
+
+    @property
+    def done(self) -> int:
+        """Number of conditions that are over."""
+        return len(self.finished)

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 from jointbench.acquisition.records.recordings import Hit, Verdict
 from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.measure.bench_parts import BenchParts
-from jointbench.station.measure.observer import HitNews
-from jointbench.station.measure.session_log import setting_entry
+from jointbench.station.measure.hit_sketch import hit_averaged
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.trigger import TriggerWatch
+from jointbench.station.session_events.hit_events import SettingProposed
 
 
 @dataclass(slots=True)
@@ -46,16 +46,22 @@ class Trials:
     def show(self, cut: CutHit) -> None:
         """Show the trial hit that was entered last."""
         hits, wanted = self.record.hits, self.bench.plan.hits.trial_hits
-        news = HitNews(
-            len(hits), cut, hits[-1], None, len(self._fit), wanted, None, None
+        self.bench.desk.write(
+            hit_averaged(
+                len(hits) - 1,
+                (len(self._fit), wanted),
+                cut,
+                None,
+                channels=self.bench.channels,
+                sample_rate=self.bench.recorder.sample_rate,
+                trial=True,
+            )
         )
-        self.bench.watcher.hit(news)
 
     def settle(self) -> None:
         """Propose settings with reasons, and use those that the plan leaves open."""
         self.record.proposals = self.trigger.settle(self._fit)
         for proposal in self.record.proposals:
-            self.bench.recorder.log(setting_entry(proposal))
-            self.bench.watcher.say(
-                f"{proposal.name} {proposal.value:.4g}: {proposal.reason}"
+            self.bench.desk.write(
+                SettingProposed(proposal.name, proposal.value, proposal.reason)
             )

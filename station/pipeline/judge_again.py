@@ -9,6 +9,8 @@ from jointbench.acquisition.records.provenance import Provenance
 from jointbench.acquisition.records.recordings import Hit, Recording, Verdict
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
+from jointbench.station.files.run_purposes import purpose_of
+from jointbench.station.session_events.operator_events import PAUSE
 
 NOT_THERE = "-"
 """In place of a verdict where there was no such hit."""
@@ -121,6 +123,8 @@ def _found(
     """Return the hits of one recording, their level not yet compared with others'."""
     if recording.hits and not stored.again:
         return FoundHits(recording.hits)
+    if purpose_of(recording) == PAUSE:
+        raise NoHitFound(f"recording {recording.name!r} is of a pause")
     fresh = find_hits(replace(recording, hits=()), criteria)
     hits = _with_memory(recording, fresh.hits, criteria, stored)
     return FoundHits(hits, fresh.provenance[len(recording.provenance) :])

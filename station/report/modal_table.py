@@ -70,10 +70,15 @@ def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) ->
 
 
 def frf_words(frf: Frf) -> str:
-    """Return one line on FRFs that come from files."""
+    """Return one line on FRFs that come from files, or from runs with a shaker."""
     outputs, inputs, lines = frf.response.shape
+    done = [dict(one.detail) for one in frf.provenance if one.name == "frf"]
+    blocks = done[-1].get("blocks") if done else None
+    origin = "FRFs from files"
+    if blocks is not None:
+        origin = f"FRFs of a shaker run, {blocks} blocks of {done[-1]['block_s']:.3g} s"
     return (
-        f"FRFs from files: {frf.kind.value}, {outputs} output{'s' * (outputs > 1)} x "
+        f"{origin}: {frf.kind.value}, {outputs} output{'s' * (outputs > 1)} x "
         f"{inputs} input{'s' * (inputs > 1)}, {lines} lines from "
         f"{frf.frequency[0]:g} to {frf.frequency[-1]:g} Hz"
     )

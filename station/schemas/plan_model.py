@@ -42,6 +42,8 @@ from jointbench.station.schemas.positive_quantities import (
 )
 
 _SECONDS_IN_A_MINUTE = 60.0
+_FED = (Quantity.FORCE, Quantity.ACCELERATION, Quantity.PRESSURE)
+"""Quantities whose sensors have a built-in amplifier unless the plan has iepe = 0."""
 
 
 class AxisTable(StrictTable):
@@ -56,7 +58,7 @@ class PlanSensorTable(StrictTable):
     """A sensor, of one axis (given right here) or of several (`axes`)."""
 
     name: str = Field(min_length=1, max_length=40)
-    quantity: Literal["force", "acceleration"]
+    quantity: Quantity
     point: str = ""
     physical: str | None = None
     direction: str = Field(default="+z", pattern=r"^[+-][A-Za-z][A-Za-z0-9]*$")
@@ -64,10 +66,11 @@ class PlanSensorTable(StrictTable):
     axes: tuple[AxisTable, ...] = Field(default=(), max_length=3)
     range: str
     iepe: str | None = None
-    coupling: Literal["AC", "DC"] = "AC"
+    coupling: Literal["AC", "DC"] | None = None
     serial: str = ""
     calibrated: date | None = None
     calibration_months: int = Field(default=12, ge=1, le=120)
+    noise: str | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> "PlanSensorTable":
@@ -76,7 +79,7 @@ class PlanSensorTable(StrictTable):
             raise ValueError(
                 "give either physical and sensitivity, or axes with both in each"
             )
-        if self.quantity != "force" and not self.point:
+        if self.quantity.is_motion and not self.point:
             raise ValueError("say at which point it sits, point = '1'")
         return self
 
@@ -95,7 +98,7 @@ class PlanSensorTable(StrictTable):
         )
         return Sensor(
             name=self.name,
-            quantity=Quantity(self.quantity),
+            quantity=self.quantity,
             point=self.point,
             axes=tuple(
                 Axis(
@@ -107,12 +110,21 @@ class PlanSensorTable(StrictTable):
             ),
             unit=rows[0].sensitivity.rpartition("/")[2].strip(),
             range=parse_value(self.range, self.quantity),
-            excitation=None if self.iepe is None else _amperes(self.iepe),
-            coupling=self.coupling,
+            excitation=self._excitation(),
+            coupling=self.coupling or ("AC" if self.quantity in _FED else "DC"),
             serial=self.serial,
             calibrated=self.calibrated,
             calibration_months=self.calibration_months,
+            noise=None
+            if self.noise is None
+            else parse_value(self.noise, self.quantity),
         )
+
+    def _excitation(self) -> float | None:
+        """Return the current [A]; by default only sensors that usually need one."""
+        if self.iepe is not None:
+            return _amperes(self.iepe)
+        return None if self.quantity in _FED else 0.0
 
 
 def _amperes(text: str) -> float:

@@ -23,9 +23,22 @@ from jointbench.station.session_events.flow_events import (
 from jointbench.station.session_events.hit_events import (
     BoltRead,
     CheckDone,
+    GainForecast,
     HitJudged,
     SettingProposed,
     VerdictChanged,
+)
+from jointbench.station.session_events.operator_events import (
+    CommandAnswered,
+    ConditionReopened,
+    NoteAdded,
+    PauseChanged,
+    WarningsSeen,
+)
+from jointbench.station.session_events.view_events import (
+    BoltAsked,
+    HitAveraged,
+    SessionBegun,
 )
 
 Event = (
@@ -42,13 +55,24 @@ Event = (
     | CableChanged
     | SamplesMissing
     | SessionEnded
+    | SessionBegun
+    | HitAveraged
+    | GainForecast
+    | BoltAsked
+    | CommandAnswered
+    | NoteAdded
+    | PauseChanged
+    | WarningsSeen
+    | ConditionReopened
 )
 _KINDS: Mapping[str, type[Event]] = {
     kind.kind: kind
     for kind in (
         *(HitJudged, VerdictChanged, SettingProposed, CheckDone, BoltRead),
         *(RunBegun, Asked, ConditionDone, Said, Warned, CableChanged),
-        *(SamplesMissing, SessionEnded),
+        *(SamplesMissing, SessionEnded, SessionBegun, HitAveraged, CommandAnswered),
+        GainForecast,
+        *(NoteAdded, PauseChanged, WarningsSeen, ConditionReopened, BoltAsked),
     )
 }
 

@@ -15,8 +15,21 @@ from jointbench.station.session_events.flow_events import (
 from jointbench.station.session_events.hit_events import (
     BoltRead,
     CheckDone,
+    GainForecast,
     HitJudged,
     SettingProposed,
+)
+from jointbench.station.session_events.operator_events import (
+    CommandAnswered,
+    ConditionReopened,
+    NoteAdded,
+    PauseChanged,
+    WarningsSeen,
+)
+from jointbench.station.session_events.view_events import (
+    BoltAsked,
+    HitAveraged,
+    SessionBegun,
 )
 
 
@@ -45,7 +58,7 @@ def _words(event: Event) -> str:
             return f"{name} ({done} of {planned} conditions are done)"
         case ConditionDone(name=name, given_up=given_up):
             return f"{name} {'is given up' if given_up else 'is done'}"
-        case Said(words=words) | Warned(words=words):
+        case Said(words=words) | Warned(words=words) | NoteAdded(words=words):
             return words
         case CableChanged(channels=channels):
             return channels
@@ -53,4 +66,39 @@ def _words(event: Event) -> str:
             return f"{what}, {samples} samples missing ({words})"
         case SessionEnded(interrupted=interrupted, reason=reason):
             return " ".join(("interrupted" if interrupted else "regularly", reason))
+    return _view_words(event)
+
+
+def _view_words(event: Event) -> str:
+    match event:
+        case SessionBegun(channels=channels, conditions=conditions):
+            return f"{len(channels)} channels, {len(conditions)} conditions"
+        case GainForecast(more=more, peaks=peaks):
+            return f"{more} more hits: " + "; ".join(map(_gain, peaks))
+        case HitAveraged(hit=hit, good=good, wanted=wanted):
+            mean = event.mean_coherence
+            coherence = "" if mean is None else f", coherence {mean:.3f}"
+            return f"after hit {hit + 1}, {good} of {wanted} good{coherence}"
+        case CommandAnswered(number=number, by=by, done=done, words=words):
+            kind = event.command.get("command", "")
+            answer = "done" if done else "refused"
+            return f"{number} of {by}: {kind}, {answer}: {words}"
+        case PauseChanged(paused=paused):
+            return "hits are ignored" if paused else "over"
+        case WarningsSeen(count=count):
+            return f"{count} warnings"
+        case ConditionReopened(name=name):
+            return name
+        case BoltAsked(bolt=bolt, bolts=bolts, target=target):
+            return f"bolt {bolt} of {bolts} to {target:g} N m"
     return ""
+
+
+def _gain(peak: dict[str, float]) -> str:
+    """Return the scatter of one resonance now and after further hits."""
+    now, later = peak["frequency_sd"], peak["frequency_sd_after"]
+    damping = 100 * peak["damping_sd"], 100 * peak["damping_sd_after"]
+    return (
+        f"{peak['frequency']:.1f} Hz from {now:.2g} to {later:.2g} Hz, damping from "
+        f"{damping[0]:.2g} to {damping[1]:.2g} %"
+    )

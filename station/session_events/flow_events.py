@@ -11,11 +11,13 @@ class RunBegun:
 
     Attributes:
         name: of the recording.
-        purpose: ``"trial"`` or ``"measurement"``.
+        purpose: ``"trial"`` or ``"measurement"`` of hits, ``"pause"``; ``"operating"``,
+            ``"shaker"`` or ``"plain"`` for a timed run.
         point: to strike.
         torque: on each bolt [N m], None if not given.
         preload: [N], None if not given.
         level: peak force to aim at [N], None for any.
+        duration: of a timed run [s], None for others.
     """
 
     kind: ClassVar[str] = "run"
@@ -25,6 +27,7 @@ class RunBegun:
     torque: float | None = None
     preload: float | None = None
     level: float | None = None
+    duration: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Events of a session about hits, settings, checks and bolts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 
@@ -38,6 +38,25 @@ class VerdictChanged(HitJudged):
     """A later verdict on a hit; the latest one counts."""
 
     kind: ClassVar[str] = "verdict"
+
+
+@dataclass(frozen=True, slots=True)
+class GainForecast:
+    """What further hits at a condition would buy, after a hit.
+
+    Attributes:
+        hit: number of the hit, from 0.
+        more: number of further hits.
+        peaks: of each resonance ``frequency`` [Hz] and ``damping`` (ratio) [-], their
+            standard deviations now, ``frequency_sd`` [Hz] and ``damping_sd`` (relative)
+            [-], and those with the further hits, ``frequency_sd_after`` and
+            ``damping_sd_after``.
+    """
+
+    kind: ClassVar[str] = "gain"
+    hit: int
+    more: int
+    peaks: list[dict[str, float]] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -11,6 +11,7 @@ from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.ni.stream import Block, NiStream, StreamSettings
+from jointbench.acquisition.recorder.requests import Setup
 from jointbench.acquisition.records.recordings import Channel
 from jointbench.acquisition.records.source import Run, Source
 from jointbench.simulators.chassis.modules.inventory import DEFAULT_MODULE
@@ -62,6 +63,17 @@ class ChassisSource:
         Raises:
             InstrumentError: the chassis was lost, or lost samples.
         """
+        with (
+            self.served() as setup,
+            closing(Chassis(setup.address)) as chassis,
+            closing(NiStream(chassis, setup.sensors, setup.settings)) as stream,
+        ):
+            stream.start()
+            yield from _first(stream, self.samples)
+
+    @contextmanager
+    def served(self) -> Iterator[Setup]:
+        """Serve the chassis for the duration, and yield what is streamed from it."""
         rate = self.sample_rate
         setup = ChassisSetup(
             bench=self.source,
@@ -70,13 +82,8 @@ class ChassisSource:
             top_rate=rate,
         )
         settings = StreamSettings(rate, max(1, round(BLOCK * rate)))
-        with (
-            SimulatedChassis(setup) as server,
-            closing(Chassis(server.address)) as chassis,
-            closing(NiStream(chassis, _table(self.channels), settings)) as stream,
-        ):
-            stream.start()
-            yield from _first(stream, self.samples)
+        with SimulatedChassis(setup) as server:
+            yield Setup(server.address, _table(self.channels), settings, self.samples)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,6 +131,10 @@ class ChassisRun:
     def blocks(self) -> Iterator[FloatArray]:
         """Yield the samples as the client reads them."""
         return ChassisSource(self.run, self.samples).blocks()
+
+    def served(self) -> AbstractContextManager[Setup]:
+        """Serve the chassis, see `ChassisSource.served`."""
+        return ChassisSource(self.run, self.samples).served()
 
 
 def _first(stream: NiStream, samples: int) -> Iterator[FloatArray]:

@@ -7,6 +7,7 @@ session that is recorded went the way that a session at the bench goes.
 
 import os
 from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -17,7 +18,9 @@ from jointbench.acquisition.records.recordings import Channel
 from jointbench.acquisition.records.source import Run, Source
 
 if TYPE_CHECKING:
+    from jointbench.acquisition.recorder.requests import Setup
     from jointbench.simulators.campaigns.joint_campaign import JointCampaign
+    from jointbench.station.sources.chassis_source import ChassisSource
 
 SCHEMES = ("sim",)
 
@@ -51,7 +54,7 @@ class WholeStream:
         start_time: of its first sample [s].
     """
 
-    source: Source
+    source: "ChassisSource"
     preload: float | None
     start_time: float = 0.0
 
@@ -78,6 +81,10 @@ class WholeStream:
     def blocks(self) -> Iterator[FloatArray]:
         """Yield the blocks of the source."""
         return self.source.blocks()
+
+    def served(self) -> AbstractContextManager["Setup"]:
+        """Serve the chassis of the source for the duration."""
+        return self.source.served()
 
 
 def is_url(text: str) -> bool:

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Recording of runs as `measure` records: each block is on disk before the next.
 
+A chassis is read by a recording process, an own source of a program where it is.
+
 Hits are judged when the file is finished or recovered; its header records this.
 """
 
 import uuid
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -16,7 +18,7 @@ from jointbench.acquisition.basics.errors import (
     NoHitFound,
 )
 from jointbench.acquisition.file_access.file_lock import is_held
-from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session, software_version
 from jointbench.acquisition.records.source import Run
 from jointbench.acquisition.session_file.live_write import LiveSession, channel_rows
@@ -25,22 +27,18 @@ from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.sources.open_source import RunSequence
+from jointbench.station.sources.record_served import (
+    Progress,
+    ServedRun,
+    record_served,
+    require_same,
+    run_entry,
+)
 
 BLOCK = 0.1
 """Usual length of a block [s]."""
 HITS_LATER = {"hits": "later"}
 """What the head of a recording says whose hits are judged at its end."""
-
-
-@dataclass(slots=True)
-class Progress:
-    """How far a recording has come.
-
-    Attributes:
-        interrupted: whether a stop was requested.
-    """
-
-    interrupted: bool = False
 
 
 def record_live(sequence: RunSequence, path: Path) -> bool:
@@ -104,13 +102,16 @@ def _judged(recording: Recording, criteria: HitCriteria | None) -> Recording:
 
 
 def _record_runs(sequence: RunSequence, path: Path, progress: Progress) -> None:
+    if all(isinstance(run, ServedRun) for run in sequence.runs):
+        record_served(sequence, path, _meta(sequence), progress)
+        return
     first = sequence.runs[0]
     block = max(1, round(BLOCK * first.sample_rate))
     channels = len(first.channels)
     with LiveSession(path, _meta(sequence), channels=channels, block=block) as live:
         try:
             for segment, run in enumerate(sequence.runs):
-                _require_same(first, run)
+                require_same(first, run)
                 _record_run(run, segment, live, progress)
                 if progress.interrupted:
                     break
@@ -121,16 +122,7 @@ def _record_runs(sequence: RunSequence, path: Path, progress: Progress) -> None:
 
 
 def _record_run(run: Run, segment: int, live: LiveSession, progress: Progress) -> None:
-    live.log(
-        {
-            "kind": "run",
-            "name": run.name,
-            "purpose": "measurement",
-            "point": _struck(run.channels),
-            "preload": run.preload,
-            "start_time": run.start_time,
-        }
-    )
+    live.log(run_entry(run))
     count = 0
     for samples in run.blocks():
         live.append(samples, segment=segment, first=count)
@@ -139,25 +131,6 @@ def _record_run(run: Run, segment: int, live: LiveSession, progress: Progress) -
             return
     if not count:
         raise InstrumentError(f"source {run.name!r} delivered no sample; check it")
-
-
-def _struck(channels: tuple[Channel, ...]) -> str:
-    """Return the point of the hammer, empty where there is none."""
-    points = (c.point for c in channels if c.quantity is Quantity.FORCE)
-    return next(points, "")
-
-
-def _require_same(first: Run, run: Run) -> None:
-    """Refuse a run that a file of the first one's channels cannot hold."""
-    same = [replace(channel, point="") for channel in first.channels]
-    if (
-        run.sample_rate != first.sample_rate
-        or [replace(channel, point="") for channel in run.channels] != same
-    ):
-        raise InstrumentError(
-            f"run {run.name!r} has other channels or another rate than "
-            f"{first.name!r}; record it into a session of its own"
-        )
 
 
 def _meta(sequence: RunSequence) -> dict[str, object]:

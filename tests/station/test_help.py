@@ -28,7 +28,7 @@ QUANTITIES = {"QUANTITY", "NUMBER", "LOW:HIGH", "FREQUENCY", "ANGLE", "LIMIT", "
 QUANTITIES |= {"NAME:FROM:TO:N", "ROLE:UNIT,...", "HEIGHT:PITCH"}
 OTHERS = {"PATH", "FOLDER", "URL", "NAME", "NAME,...", "TERM,...", "N"}
 KINDS = ("force", "length", "mass", "pressure", "ratio", "frequency", "stiffness")
-KINDS += ("torque",)
+KINDS += ("torque", "time")
 MOST_SUMMARY = 60
 
 

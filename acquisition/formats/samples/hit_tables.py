@@ -40,7 +40,7 @@ from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
 _TIME = "time"
-_QUANTITIES = tuple(quantity.value for quantity in Quantity)
+_QUANTITIES = tuple(quantity.value for quantity in Quantity.mechanical())
 
 
 def read_recording(

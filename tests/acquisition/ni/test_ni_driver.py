@@ -1,9 +1,11 @@
 """The NI driver with the real client, against a chassis on NI's own servicer."""
 
 import math
+import socket
 import threading
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from datetime import date
 
@@ -347,4 +349,42 @@ def test_a_task_of_a_killed_program_is_replaced() -> None:
         made = stream(client)
         assert made.sample_rate == 12_800.0
         made.close()
+        client.close()
+
+
+@contextmanager
+def late_greeting(address: str, seconds: float) -> Iterator[str]:
+    """Pass a connection on to a server, as one whose computer answers late [s]."""
+    host, port = address.split(":")
+    listener = socket.create_server(("127.0.0.1", 0))
+
+    def pass_on(source: socket.socket, target: socket.socket) -> None:
+        with suppress(OSError):
+            while data := source.recv(65536):
+                target.sendall(data)
+            target.shutdown(socket.SHUT_RDWR)
+
+    def accept() -> None:
+        near, _ = listener.accept()
+        with near, socket.create_connection((host, int(port))) as far:
+            back = threading.Thread(target=pass_on, args=(near, far), daemon=True)
+            back.start()
+            time.sleep(seconds)
+            pass_on(far, near)
+
+    passing = threading.Thread(target=accept)
+    passing.start()
+    with listener:
+        yield f"127.0.0.1:{listener.getsockname()[1]}"
+    passing.join(10.0)
+
+
+def test_a_server_that_answers_late_is_waited_for() -> None:
+    """Its computer is busy: a second and a half pass before its greeting."""
+    with (
+        SimulatedChassis(ChassisSetup(speed=math.inf)) as server,
+        late_greeting(server.address, 1.5) as address,
+    ):
+        client = Chassis(address)
+        assert client.modules()
         client.close()

@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,7 @@ SENSORS = (
 
 @contextmanager
 def recording(
-    path: Path, *, speed: float, buffer: float = 20.0
+    path: Path, *, speed: float, buffer: float = 20.0, samples: int | None = None
 ) -> Iterator[tuple[RecorderProcess, Callable[[], None]]]:
     """Record the hammer of a simulated chassis; wait for a second of samples."""
     setup = ChassisSetup(speed=speed)
@@ -56,7 +57,8 @@ def recording(
 
     with SimulatedChassis(setup) as server:
         settings = StreamSettings(RATE, BLOCK, buffer=buffer)
-        with RecorderProcess(Setup(server.address, SENSORS, settings)) as recorder:
+        wanted = Setup(server.address, SENSORS, settings, samples)
+        with RecorderProcess(wanted) as recorder:
             recorder.begin(path, meta)
             yield recorder, wait
 
@@ -102,6 +104,36 @@ def test_a_device_without_a_clock_waits_for_the_program(tmp_path: Path) -> None:
     assert stored(path) == recorder.counters.delivered == 3 * BLOCK
 
 
+def account(path: Path) -> tuple[int, dict[str, int]]:
+    """Return the samples that gaps state, and the entry of the account.
+
+    Spans and gaps of each segment must follow each other without a sample between,
+    apart from what was read and, because of a pause, not wanted any more.
+    """
+    with open_guarded(path) as file:
+        content = read_live(file)
+    gaps = [e for e in content.log if e["kind"] == "gap"]
+    parts = [(s.segment, s.first, s.count) for s in content.spans]
+    parts += [(g["segment"], g["first_sample"], g["samples"]) for g in gaps]
+    (books,) = [e for e in content.log if e["kind"] == "continuity"]
+    reached: dict[int, int] = {}
+    for segment, first, count in sorted(parts):
+        assert 0 <= first - reached.get(segment, 0) <= books["unwanted"]
+        reached[segment] = first + count
+    assert content.samples == books["stored_samples"]
+    assert content.samples == (
+        books["acquired"] - books["unread"] - books["unwanted"] - books["lost"]
+    )
+    return sum(g["samples"] for g in gaps), books
+
+
+def hold_up(recorder: RecorderProcess, seconds: float) -> None:
+    """Stop the recording process for a time [s], as a busy computer may."""
+    os.kill(recorder.process_id, signal.SIGSTOP)
+    time.sleep(seconds)
+    os.kill(recorder.process_id, signal.SIGCONT)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals: POSIX")
 def test_overwritten_samples_are_stated_in_the_file_without_a_reader(
     tmp_path: Path,
@@ -110,22 +142,52 @@ def test_overwritten_samples_are_stated_in_the_file_without_a_reader(
     path = tmp_path / "s.h5"
     with recording(path, speed=8.0, buffer=0.5) as (recorder, wait):
         wait()
-        os.kill(recorder.process_id, signal.SIGSTOP)
-        time.sleep(0.3)  # 2.4 s of signal
-        os.kill(recorder.process_id, signal.SIGCONT)
-        items = recorder.items()
-        gap = next(item for item in items if isinstance(item, StreamGap))
-        next(item for item in items if isinstance(item, Block))
+        hold_up(recorder, 0.3)  # 2.4 s of signal
+        for item in recorder.items():
+            if isinstance(item, StreamGap) and item.samples > RATE:
+                break
+        recorder.stop(interrupted=False)
+    stated, books = account(path)
+    assert stated == books["lost"] == recorder.counters.lost > RATE
+    assert stated == sum(gap.samples for gap in recorder.gaps)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals: POSIX")
+@pytest.mark.parametrize("end", ["stop", "pause"])
+def test_samples_overwritten_before_the_end_are_stated_to_the_program(
+    tmp_path: Path, end: str
+) -> None:
+    """The program ends or pauses at once after the hold-up, and has read no news."""
+    path = tmp_path / "s.h5"
+    with recording(path, speed=8.0, buffer=0.5) as (recorder, wait):
+        wait()
+        hold_up(recorder, 0.3)
+        if end == "pause":
+            recorder.pause()
+        recorder.stop(interrupted=True)
+    stated, books = account(path)
+    assert stated == books["lost"] == recorder.counters.lost > RATE
+    assert stated == sum(gap.samples for gap in recorder.gaps)
+    assert books["unread"] < RATE  # the buffer, and what one read took from it
+
+
+def test_a_recording_of_a_length_has_so_many_samples_and_another_run_follows(
+    tmp_path: Path,
+) -> None:
+    """The last block is short; what the device made beyond is stated as unwanted."""
+    path, wanted = tmp_path / "s.h5", 3 * BLOCK + 7
+    with recording(path, speed=np.inf, samples=wanted) as (recorder, _):
+        list(recorder.follow())
+        assert recorder.complete
+        recorder.change(replace(recorder.setup, samples=5))
+        blocks = [i.samples for i in recorder.items() if isinstance(i, Block)]
         recorder.stop(interrupted=False)
     with open_guarded(path) as file:
-        content = read_live(file)
-    gaps = [(e["what"], e["samples"]) for e in content.log if e["kind"] == "gap"]
-    (books,) = [e for e in content.log if e["kind"] == "continuity"]
-    assert gaps[0] == ("overrun", gap.samples)
-    assert books["lost"] == sum(samples for _, samples in gaps) > 0.5 * RATE
-    assert content.samples == books["acquired"] - books["unread"] - books["lost"]
-    before, after = content.spans[:2]
-    assert after.first - before.first - before.count == gap.samples
+        spans = read_live(file).spans
+    assert spans == (LiveSpan(0, 0, 0, wanted), LiveSpan(1, 0, wanted, 5))
+    assert np.hstack(blocks).shape == (1, 5)
+    stated, books = account(path)
+    assert (stated, books["unwanted"]) == (0, BLOCK - 7 + BLOCK - 5)
 
 
 def test_samples_recorded_before_a_pause_are_not_passed_on_after_it(
@@ -135,6 +197,8 @@ def test_samples_recorded_before_a_pause_are_not_passed_on_after_it(
     path = tmp_path / "s.h5"
     with recording(path, speed=8.0) as (recorder, wait):
         wait()
+        while stored(path) <= BLOCK:  # what was read is stored block by block
+            time.sleep(0.02)
         recorder.pause()
         before = recorder.samples
         recorder.resume()

@@ -17,6 +17,7 @@ from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates import PlatesDesign, natural_frequencies
 from jointbench.simulators.plates.plates_bench import PlatesBench
+from jointbench.station.bench_view.text_screen import TextScreen
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.commands.verify_command import run_recover, run_verify
 from jointbench.station.main import app, exit_code
@@ -27,7 +28,6 @@ from jointbench.station.measure.chassis import (
     open_chassis,
 )
 from jointbench.station.measure.plan import conditions, read_plan
-from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import ChainSettings
 from jointbench.station.screen.terminal import console
 

@@ -1,26 +1,62 @@
 """What the operator says while a session runs, and what interrupts it."""
 
+import io
 import math
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
+from rich.console import Console
+from rich.live import Live
 
 from jointbench.acquisition.ni.driver import Chassis
-from jointbench.acquisition.records.recordings import Hit, Verdict
+from jointbench.acquisition.records.recordings import Hit, Quantity, Verdict
+from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.store import read_session
+from jointbench.signal.hits.find_hits import HitCriteria, find_hits
 from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates_bench import PlatesBench
+from jointbench.station.bench_view.session_screen import (
+    Look,
+    ViewContext,
+    session_lines,
+)
+from jointbench.station.bench_view.terminal_view import TerminalView
+from jointbench.station.bench_view.text_screen import TextScreen
+from jointbench.station.bench_view.watch_session import run_watch
 from jointbench.station.commands.verify_command import run_verify
-from jointbench.station.measure.bench_session import Measured, measure
-from jointbench.station.measure.chassis import OpenChassis, OperatorOfSimulation
-from jointbench.station.measure.observer import Command, HitNews
+from jointbench.station.measure.bench_session import Measured, measure, run_measure
+from jointbench.station.measure.chassis import (
+    OpenChassis,
+    OperatorOfSimulation,
+    open_chassis,
+)
 from jointbench.station.measure.observer import Operator as Striker
 from jointbench.station.measure.plan import Condition, read_plan
-from jointbench.station.measure.text_screen import TextScreen
+from jointbench.station.pipeline.judge_again import StoredHits, judge_again
 from jointbench.station.screen.terminal import console
+from jointbench.station.session_events.command_codec import Command
+from jointbench.station.session_events.event_codec import Stamped, from_log
+from jointbench.station.session_events.flow_commands import (
+    AddNote,
+    ContinueSession,
+    PauseSession,
+    QuitSession,
+    SeeWarnings,
+)
+from jointbench.station.session_events.hit_commands import (
+    AcceptHit,
+    GoToPoint,
+    NextPoint,
+    RejectHit,
+    RepeatPoint,
+    UndoVerdict,
+)
+from jointbench.station.session_events.session_state import SessionState, state_after
+from jointbench.station.session_events.view_events import HitAveraged
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "plates.toml"
 HITS = """
@@ -46,10 +82,14 @@ class Operator(TextScreen):
         """Give the commands that come before the first hit."""
         self._waiting += self.after.pop(0, ())
 
-    def hit(self, news: HitNews) -> None:
+    def follow(self, events: Sequence[Stamped]) -> None:
         """Think of what to say."""
-        self._waiting += self.after.pop(news.number, ())
-        self.on_hit(news.number)
+        TextScreen.follow(self, events)
+        for stamped in events:
+            if isinstance(stamped.event, HitAveraged):
+                number = stamped.event.hit + 1
+                self._waiting += self.after.pop(number, ())
+                self.on_hit(number)
 
     def command(self) -> Command | None:
         """Say it, one thing a block."""
@@ -73,6 +113,16 @@ class Wandering:
         OperatorOfSimulation(self.chassis).ask(place)
 
 
+def plan_file(folder: Path) -> Path:
+    """Write the plan: two points, two hits each."""
+    text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
+    head, _, rest = text.partition("[hits]")
+    _, _, tail = rest.partition("[joint]")
+    path = folder / "plan.toml"
+    path.write_text(f"{head}[hits]\n{HITS}\n[joint]{tail}", encoding="utf-8")
+    return path
+
+
 def session(
     folder: Path,
     after: dict[int, tuple[Command, ...]],
@@ -82,11 +132,7 @@ def session(
     hand: Callable[[Chassis], Striker] = OperatorOfSimulation,
 ) -> tuple[Measured, Operator]:
     """Measure two points, two hits each, with an operator who says things."""
-    text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
-    head, _, rest = text.partition("[hits]")
-    _, _, tail = rest.partition("[joint]")
-    path = folder / "plan.toml"
-    path.write_text(f"{head}[hits]\n{HITS}\n[joint]{tail}", encoding="utf-8")
+    path = plan_file(folder)
     operator = Operator(console("-"), after=dict(after), on_hit=on_hit)
     setup = ChassisSetup(
         bench=PlatesBench(operator=SimulatedOperator(fates=fates)), speed=math.inf
@@ -111,7 +157,7 @@ def points(folder: Path, verdict: Verdict = Verdict.OK) -> list[str]:
 
 def test_a_hit_rejected_by_the_operator_is_made_up_for(tmp_path: Path) -> None:
     """It stays in the file, with the operator and the earlier verdict."""
-    measured, _ = session(tmp_path, {1: (Command.REJECT,)})
+    measured, _ = session(tmp_path, {1: (RejectHit(),)})
     hits = stored(tmp_path)
     assert measured.whole
     assert hits[0].verdict is Verdict.OPERATOR
@@ -122,7 +168,7 @@ def test_a_hit_rejected_by_the_operator_is_made_up_for(tmp_path: Path) -> None:
 def test_a_bad_hit_accepted_by_the_operator_counts(tmp_path: Path) -> None:
     """A double hit, kept: no hit more than the plan wants."""
     measured, _ = session(
-        tmp_path, {1: (Command.ACCEPT,)}, fates=(Fate.DOUBLE, *[Fate.GOOD] * 9)
+        tmp_path, {1: (AcceptHit(),)}, fates=(Fate.DOUBLE, *[Fate.GOOD] * 9)
     )
     hits = stored(tmp_path)
     assert measured.whole
@@ -132,7 +178,7 @@ def test_a_bad_hit_accepted_by_the_operator_counts(tmp_path: Path) -> None:
 
 def test_undo_takes_the_last_word_back(tmp_path: Path) -> None:
     """Rejected and undone: the hit has its own verdict again, word for word."""
-    measured, _ = session(tmp_path, {1: (Command.REJECT, Command.UNDO)})
+    measured, _ = session(tmp_path, {1: (RejectHit(), UndoVerdict())})
     assert measured.whole
     assert len(stored(tmp_path)) == 4
     assert stored(tmp_path)[0].reason.startswith("single clean pulse")
@@ -140,20 +186,20 @@ def test_undo_takes_the_last_word_back(tmp_path: Path) -> None:
 
 def test_undo_without_a_word_takes_the_last_hit_out(tmp_path: Path) -> None:
     """A wrong key without an earlier command."""
-    session(tmp_path, {1: (Command.UNDO,)})
+    session(tmp_path, {1: (UndoVerdict(),)})
     assert stored(tmp_path)[0].reason.startswith("taken back by the operator")
 
 
 def test_rejecting_the_hit_that_ended_a_point_goes_back_to_it(tmp_path: Path) -> None:
     """Hit 2 ends point 1; rejected, point 1 is struck once more before point 2."""
-    measured, _ = session(tmp_path, {2: (Command.REJECT,)})
+    measured, _ = session(tmp_path, {2: (RejectHit(),)})
     assert measured.whole
     assert [hit.point for hit in stored(tmp_path)] == ["1", "1", "1", "2", "2"]
 
 
 def test_repeat_sets_the_hits_of_the_point_aside(tmp_path: Path) -> None:
     """After the first hit at point 2 that point starts again; point 1 stays."""
-    measured, _ = session(tmp_path, {3: (Command.REPEAT,)})
+    measured, _ = session(tmp_path, {3: (RepeatPoint(),)})
     assert measured.whole
     assert points(tmp_path) == ["1", "1", "2", "2"]
     assert points(tmp_path, Verdict.OPERATOR) == ["2"]
@@ -161,7 +207,7 @@ def test_repeat_sets_the_hits_of_the_point_aside(tmp_path: Path) -> None:
 
 def test_repeat_before_the_first_hit_repeats_the_point_before(tmp_path: Path) -> None:
     """Point 1 is just done; both its hits are set aside and it is struck again."""
-    measured, _ = session(tmp_path, {2: (Command.REPEAT,)})
+    measured, _ = session(tmp_path, {2: (RepeatPoint(),)})
     assert measured.whole
     assert points(tmp_path, Verdict.OPERATOR) == ["1", "1"]
     assert points(tmp_path) == ["1", "1", "2", "2"]
@@ -169,7 +215,7 @@ def test_repeat_before_the_first_hit_repeats_the_point_before(tmp_path: Path) ->
 
 def test_next_leaves_a_point_that_is_not_done_and_says_so(tmp_path: Path) -> None:
     """One hit at point 1, two at point 2; the session is not whole."""
-    measured, _ = session(tmp_path, {1: (Command.NEXT,)})
+    measured, _ = session(tmp_path, {1: (NextPoint(),)})
     assert measured.record.incomplete == ["20 Nm, point 1, 150 N"]
     assert not measured.whole
     assert points(tmp_path) == ["1", "2", "2"]
@@ -177,7 +223,7 @@ def test_next_leaves_a_point_that_is_not_done_and_says_so(tmp_path: Path) -> Non
 
 def test_quit_ends_with_a_valid_file(tmp_path: Path) -> None:
     """What was recorded until then is whole, and says that it was interrupted."""
-    measured, _ = session(tmp_path, {2: (Command.QUIT,)})
+    measured, _ = session(tmp_path, {2: (QuitSession(confirmed=True),)})
     ends = [dict(s.detail) for s in read_session(tmp_path / "s.h5").provenance]
     assert measured.record.interrupted
     assert run_verify(tmp_path / "s.h5", json_target=None)
@@ -201,8 +247,8 @@ def test_ctrl_c_at_a_hit_ends_with_a_valid_file(tmp_path: Path, number: int) -> 
 
 def test_a_word_before_the_first_hit_says_that_there_is_none(tmp_path: Path) -> None:
     """And nothing else comes of it."""
-    measured, operator = session(tmp_path, {0: (Command.ACCEPT,)})
-    assert "accept: there is no hit yet" in operator.heard
+    measured, operator = session(tmp_path, {0: (AcceptHit(),)})
+    assert "there is no hit yet" in operator.heard
     assert measured.whole
 
 
@@ -216,3 +262,115 @@ def test_a_hit_at_another_point_is_found_out_though_it_came_first(
     assert verdicts[0] is Verdict.POOR_COHERENCE
     assert stored(tmp_path)[0].measure < 0.9
     assert verdicts.count(Verdict.OK) == 4
+
+
+def test_a_hit_of_an_earlier_point_is_rejected_by_its_number_and_made_up_for(
+    tmp_path: Path,
+) -> None:
+    """Hit 1 of point 1, rejected at point 2: point 1 is open again and asked for.
+
+    Reprocessing keeps it rejected; the command with its answer is in the log.
+    """
+    measured, operator = session(tmp_path, {3: (RejectHit(1), RejectHit(99))})
+    assert measured.whole
+    assert "hit 1 is rejected, its point needs one more" in operator.heard
+    assert "there is no hit 99; 3 were struck" in operator.heard
+    assert points(tmp_path) == ["1", "2", "2", "1"]
+    recordings = read_session(tmp_path / "s.h5").recordings
+    judged = judge_again(recordings, HitCriteria(), StoredHits(again=True))
+    verdicts = [hit.verdict for found in judged for hit in found.hits]
+    assert verdicts.count(Verdict.OPERATOR) == 1
+    log, _ = read_log(tmp_path / "s.h5")
+    answers = [(e["words"], e["done"]) for e in log if e["kind"] == "command"]
+    assert len(answers) == 2
+    assert [done for _, done in answers] == [True, False]
+
+
+def test_the_operator_goes_to_a_point_notes_and_quits_only_when_sure(
+    tmp_path: Path,
+) -> None:
+    """Point 2 after one hit at point 1; then back, with the first hit still there."""
+    words = {
+        1: (GoToPoint("9"), GoToPoint("2"), AddNote(" bolt  2 rubs "), QuitSession()),
+        3: (SeeWarnings(),),
+    }
+    measured, operator = session(tmp_path, words)
+    assert measured.whole
+    assert points(tmp_path) == ["1", "2", "2", "1"]
+    assert "the plan has no point '9'; it has 1, 2" in operator.heard
+    assert "2 of 2 conditions are open; confirm with 'quit yes'" in operator.heard
+    steps = read_session(tmp_path / "s.h5").provenance
+    assert [dict(s.detail)["words"] for s in steps if s.name == "note"] == [
+        "bolt 2 rubs"
+    ]
+
+
+def test_hits_during_a_pause_are_ignored_and_never_found_again(tmp_path: Path) -> None:
+    """A hit of the simulated operator falls into the pause; the stream continues."""
+    waits = [PauseSession(), *[SeeWarnings()] * 40, ContinueSession()]
+    measured, _ = session(tmp_path, {1: (NextPoint(), *waits)}, fates=(Fate.GOOD,))
+    assert [hit.point for hit in measured.record.hits] == ["1", "2", "2"]
+    recordings = read_session(tmp_path / "s.h5").recordings
+    (pause,) = (r for r in recordings if r.name == "pause")
+    assert find_hits(pause).hits
+    judged = judge_again(recordings, HitCriteria(), StoredHits(again=True))
+    assert sum(len(found.hits) for found in judged) == 3
+
+
+def test_a_second_view_in_the_middle_of_a_session_draws_the_same_screen(
+    tmp_path: Path,
+) -> None:
+    """From a copy of the file at hit 3, and from the finished file at the end."""
+    plan = read_plan(plan_file(tmp_path))
+    path, copy = tmp_path / "s.h5", tmp_path / "copy.h5"
+    drawn: list[tuple[SessionState, SessionState]] = []
+
+    class Copying(TerminalView):
+        """Compares itself with a view that joins now."""
+
+        def follow(self, events: Sequence[Stamped]) -> None:
+            """Compare, once after hit 3."""
+            TerminalView.follow(self, events)
+            if len(self.state.hits) == 3 and not drawn:
+                shutil.copy(path, copy)
+                late = state_after(SessionState(), from_log(read_log(copy)[0]))
+                drawn.append((self.state, late))
+
+    terminal = Console(file=io.StringIO(), force_terminal=True, width=80, height=24)
+    with (
+        Live(console=terminal, auto_refresh=False) as live,
+        open_chassis("sim:plates") as opened,
+    ):
+        view = Copying(live, lambda: "", path)
+        measure(plan, opened, path, view)
+    drawn.append((view.state, run_watch(path, once=True, json_target=None)))
+    for own, late in drawn:
+        assert late == own
+        around = ViewContext("s.h5", None, late.last_time)
+        one, other = (session_lines(s, around, Look(80, 24)) for s in (own, late))
+        assert [line.plain for line in one] == [line.plain for line in other]
+    assert view.state.ended is not None
+
+
+def test_a_temperature_is_recorded_beside_every_hit(tmp_path: Path) -> None:
+    """It is in no FRF and no check; each hit has its samples in the file."""
+    plan = plan_file(tmp_path)
+    air = (
+        '\n[[sensors]]\nname = "air"\nquantity = "temperature"\n'
+        'physical = "cDAQSim1Mod2/ai0"\nsensitivity = "10 mV/degC"\n'
+        'range = "100 degC"\n'
+    )
+    plan.write_text(plan.read_text(encoding="utf-8") + air, encoding="utf-8")
+    measured = run_measure(
+        plan,
+        tmp_path / "s.h5",
+        source="sim:plates?modules=2",
+        overwrite=False,
+        json_target=None,
+    )
+    assert measured.whole
+    assert len(measured.record.checks) == 3
+    for recording in read_session(tmp_path / "s.h5").recordings:
+        row = recording.row(Quantity.TEMPERATURE)
+        for hit in recording.hits:
+            assert recording.samples[row, hit.start : hit.stop].size > 3000

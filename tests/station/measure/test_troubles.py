@@ -170,7 +170,7 @@ def test_a_terminal_that_is_closed_leaves_a_finished_file(tmp_path: Path) -> Non
     )
     os.close(far)
     seen = b""
-    while b" hit 2 " not in seen:
+    while b" HIT 2 " not in seen:
         seen += os.read(terminal, 65_536)
     os.close(terminal)
     assert process.wait(timeout=60) == 5

@@ -44,13 +44,21 @@ def test_the_runs_of_a_campaign_come_through_the_chassis() -> None:
     assert run.preload == run.run.preload
 
 
-def test_a_chassis_that_goes_away_in_the_middle_is_an_error() -> None:
+def test_a_chassis_that_goes_away_in_the_middle_is_an_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A recording never pretends to be continuous where it is not."""
+    started: list[SimulatedChassis] = []
+    start = SimulatedChassis.start
+
+    def note(server: SimulatedChassis) -> None:
+        started.append(server)
+        start(server)
+
+    monkeypatch.setattr(SimulatedChassis, "start", note)
     bench = TwoBodyBench(seed=3, hits=2)
     blocks = ChassisSource(bench, samples=bench.samples).blocks()
     next(blocks)
-    frame = blocks.gi_frame  # type: ignore[attr-defined]
-    server: SimulatedChassis = frame.f_locals["server"]
-    server.drop(60.0)
+    started[0].drop(60.0)
     with pytest.raises(InstrumentError, match="lost"):
         list(blocks)

@@ -3,7 +3,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from datetime import datetime
 from pathlib import Path
 
@@ -11,14 +11,23 @@ from rich.console import Console
 
 from jointbench.acquisition.basics.errors import BadData, FormatError
 from jointbench.acquisition.file_access.file_lock import is_held
-from jointbench.acquisition.session_file.follow_log import read_log
+from jointbench.acquisition.session_file.follow_log import read_last, read_log
+from jointbench.station.bench_view.level_meter import WINDOW
+from jointbench.station.bench_view.terminal_view import TerminalView, viewing
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.screen.terminal import console, table, write_json
+from jointbench.station.session_events.condition_states import (
+    ConditionMark,
+    condition_states,
+)
 from jointbench.station.session_events.event_codec import Stamped, from_log
 from jointbench.station.session_events.event_words import event_words
+from jointbench.station.session_events.flow_commands import QuitSession
 from jointbench.station.session_events.session_state import SessionState, state_after
 
 _EVERY = 0.5  # [s] between looks at the file
+_KEYS_EVERY = 0.1  # [s] between looks at the keyboard
+_ONLY_WATCHING = ("c channel  q leaves; the session continues",)
 
 
 def run_watch(
@@ -42,14 +51,39 @@ def run_watch(
     screen = console(json_target)
     events, live = _events(session)
     state = state_after(SessionState(), events)
-    _show(session, state, screen)
-    if live and not once:
+    if live and not once and screen.is_terminal:
+        state = _watch_on_terminal(session, screen, every)
+    elif live and not once:
+        _show(session, state, screen)
         for stamped in _following(session, state.last, every):
             state = state_after(state, (stamped,))
             screen.print(_line(stamped), soft_wrap=True, markup=False)
-        _show(session, state, screen)
+    _show(session, state, screen)
     write_json(json_target, _summary(session, state, live=live))
     return state
+
+
+def _watch_on_terminal(session: Path, screen: Console, every: float) -> SessionState:
+    """Draw the screen of `measure`, until the end or until the viewer leaves."""
+    with viewing(screen, session) as view:
+        assert isinstance(view, TerminalView)
+        view.show_keys(_ONLY_WATCHING)
+        view.join(_events(session)[0])
+        for stamped in _following(
+            session, view.state.last, every, lambda: _look(session, view)
+        ):
+            view.follow((stamped,))
+        return view.state
+
+
+def _look(session: Path, view: TerminalView) -> bool:
+    """Show the levels; return whether the viewer stays."""
+    begun = view.state.begun
+    if begun is not None:
+        samples = read_last(session, round(WINDOW * begun.sample_rate))
+        if samples is not None:
+            view.level(samples)
+    return not isinstance(view.command(), QuitSession)
 
 
 def _events(session: Path) -> tuple[tuple[Stamped, ...], bool]:
@@ -67,11 +101,20 @@ def _events(session: Path) -> tuple[tuple[Stamped, ...], bool]:
     return tuple(from_log(log)), live
 
 
-def _following(session: Path, last: int, every: float) -> Iterator[Stamped]:
+def _following(
+    session: Path,
+    last: int,
+    every: float,
+    stays: Callable[[], bool] = lambda: True,
+) -> Iterator[Stamped]:
     """Yield the events after a number, until the recording is over."""
     live = True
     while live:
-        time.sleep(every)
+        until = time.monotonic() + every
+        while time.monotonic() < until:
+            time.sleep(min(every, _KEYS_EVERY))
+            if not stays():
+                return
         # Asked before the log is read: a recording that ended in between has its end.
         recording = is_held(session)
         try:
@@ -100,6 +143,7 @@ def _show(session: Path, state: SessionState, screen: Console) -> None:
         ("hits", _counted(state)),
         ("missing samples", f"{state.lost} in {state.gaps} gaps"),
         ("warnings", "; ".join(state.warnings) or "none"),
+        ("notes", "; ".join(state.notes) or "none"),
         ("last message", state.messages[-1] if state.messages else "none"),
     ]
     screen.print(table(f"{session}", ("session", "state"), rows))
@@ -111,6 +155,8 @@ def _now(state: SessionState) -> str:
         return f"{how}: {state.ended.reason}" if state.ended.reason else how
     if state.open_loops:
         return f"sensor loop open: {state.open_loops}"
+    if state.paused:
+        return "pause"
     return f"hit {state.asked}" if state.asked else "begins"
 
 
@@ -120,12 +166,18 @@ def _counted(state: SessionState) -> str:
 
 
 def _summary(session: Path, state: SessionState, *, live: bool) -> dict[str, object]:
+    conditions = condition_states(state)
     return {
         "session": str(session),
         "recording": live,
         "asked": state.asked,
         "done": state.done,
         "planned": state.planned,
+        "open": [
+            c.name
+            for c in conditions
+            if c.mark in {ConditionMark.OPEN, ConditionMark.NOW}
+        ],
         "hits": [
             {
                 "number": number + 1,
@@ -138,6 +190,8 @@ def _summary(session: Path, state: SessionState, *, live: bool) -> dict[str, obj
         ],
         "incomplete": [name for name, given_up in state.finished.items() if given_up],
         "warnings": list(state.warnings),
+        "notes": list(state.notes),
+        "paused": state.paused,
         "lost_samples": state.lost,
         "ended": state.ended is not None,
         "interrupted": state.ended is not None and state.ended.interrupted,
