@@ -23,6 +23,7 @@ from jointbench.station.commands.contact_command import (
     pressure_map_command,
 )
 from jointbench.station.commands.file_commands import (
+    example_command,
     export_command,
     inspect_command,
     recover_command,
@@ -86,6 +87,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "gap": gap_command,
     },
     "Files": {
+        "example": example_command,
         "inspect": inspect_command,
         "verify": verify_command,
         "recover": recover_command,

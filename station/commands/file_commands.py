@@ -10,6 +10,33 @@ from jointbench.station.commands.shared_options.output_options import Debug, For
 from jointbench.station.screen.exit_codes import EXIT_QUALITY
 
 
+def example_command(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NAME]", help="Example to write; without it they are listed."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER", help="Folder to write to; the name by default."
+        ),
+    ] = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Write example data with the commands to try on them.
+
+    Examples:
+        jointbench example joint
+        jointbench example archive --out year
+    """
+    from jointbench.station.examples.example_command import run_example
+
+    run_example(name, out, overwrite=force)
+
+
 def inspect_command(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Session or results file (.h5).")
