@@ -70,7 +70,7 @@ def import_command(
     Plain tables (.csv, .txt, .npy) need --columns. A file without units is refused.
 
     Examples:
-        jointbench import hit1.npy hit2.npy --out session.h5 --columns
+        jointbench import hit1.csv hit2.csv hit3.csv --out session.h5 --columns
         'time:s,force:N,acceleration:m/s^2'
         jointbench import trace.txt --out session.h5 --columns 'x:um,z:um'
         --preload '4 kN'
@@ -184,7 +184,7 @@ def surface_command(
     With --iso: the roughness parameters of ISO 21920 and ISO 25178 as well.
 
     Examples:
-        jointbench surface surface-a.csv surface-b.csv --json surfaces.json
+        jointbench surface face-a.csv face-b.csv --json surfaces.json
         jointbench surface trace.txt --columns 'x:um,z:um' --form 2 --outliers 6
         jointbench surface a.csv b.csv c.csv --filter '2.5 um:0.8 mm' --pool
         jointbench surface map.sur --report map.html

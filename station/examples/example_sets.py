@@ -2,8 +2,8 @@
 """Example data sets that come with the program, and how they are written out.
 
 Every set is a folder below `examples` with a README of commands; plans and models that
-several sets or the tests use lie beside these folders. `tests/fixtures/make_examples.py`
-makes the data.
+several sets or the tests use lie beside these folders. The data are made by
+`tests/fixtures/make_examples.py`.
 """
 
 import shutil
@@ -54,7 +54,7 @@ EXAMPLES = (
     ExampleSet(
         "joint",
         "a bolted joint: hits, two surfaces and a bench model",
-        ("surfaces/face-a.csv", "surfaces/face-b.csv"),
+        ("surfaces/face-a.csv", "surfaces/face-b.csv", "archive/narrow.toml"),
     ),
     ExampleSet(
         "surfaces",
@@ -76,7 +76,9 @@ EXAMPLES = (
         ("joint-stiffness.toml", "joint-stiffness.csv"),
     ),
     ExampleSet("archive", "a year of sessions on one joint, and two recipes"),
-    ExampleSet("machine", "a grinder of seven bodies and six joints", ("grinder.toml",)),
+    ExampleSet(
+        "machine", "a grinder of seven bodies and six joints", ("grinder.toml",)
+    ),
 )
 
 

@@ -37,6 +37,7 @@ from jointbench.station.schemas.positive_quantities import (
     Force,
     Frequency,
     Length,
+    Share,
     Time,
     Torque,
 )
@@ -68,6 +69,8 @@ class PlanSensorTable(StrictTable):
     serial: str = ""
     calibrated: date | None = None
     calibration_months: int = Field(default=12, ge=1, le=120)
+    certificate: str = Field(default="", max_length=200)
+    sensitivity_sd: Share | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> "PlanSensorTable":
@@ -112,6 +115,8 @@ class PlanSensorTable(StrictTable):
             serial=self.serial,
             calibrated=self.calibrated,
             calibration_months=self.calibration_months,
+            certificate=self.certificate,
+            sensitivity_sd=self.sensitivity_sd,
         )
 
 

@@ -13,11 +13,22 @@ REASONS = (
     "needs a cluster",
     "needs data of others",
     "needs the source tree",
+    "needs an interrupted recording",
     "runs until Ctrl-C",
     "takes minutes",
     "installs",
 )
 """What a comment says of a command that the tests do not run."""
+GENERATED = ROOT / "docs" / "command-line.md"
+"""The page of first examples of the help, which has no comments."""
+OF_COMMANDS = {
+    "demo": "takes minutes",
+    "measure": "needs hardware",
+    "profile": "needs hardware",
+    "recover": "needs an interrupted recording",
+    "simulate": "runs until Ctrl-C",
+}
+"""Why first examples of the help are not run."""
 INSTALLERS = ("python3 -m venv", ".venv", "pip ", "source ", "git ", "_JOINTBENCH")
 
 
@@ -56,6 +67,16 @@ def pages() -> list[Path]:
 def commands(path: Path) -> list[PageCommand]:
     """Return the commands of all shell blocks of a page, in their order."""
     return [one for block in BLOCK.findall(_text(path)) for one in _split(block)]
+
+
+def not_run(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield the commands of a page that are not run, with the reason."""
+    for one in commands(path):
+        reason = one.reason
+        if path == GENERATED and one.text.startswith("jointbench "):
+            reason = OF_COMMANDS.get(one.words[1], "")
+        if reason not in {"", "installs"}:
+            yield one.text, reason
 
 
 def _text(path: Path) -> str:
