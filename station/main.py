@@ -31,6 +31,7 @@ from jointbench.station.commands.file_commands import (
     verify_command,
 )
 from jointbench.station.commands.joint_commands import (
+    export_joint_command,
     gap_command,
     identify_command,
     machine_command,
@@ -82,6 +83,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
     },
     "Joints and machines": {
         "identify": identify_command,
+        "export-joint": export_joint_command,
         "contact": contact_command,
         "pressure-map": pressure_map_command,
         "machine": machine_command,

@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.normal_equations import inverses
 
-_EVALUATIONS = 20
+_EVALUATIONS = 100
 # Step of numerical slopes, as a share of each parameter's scale.
 _SLOPE_STEP = 1e-5
 _RIDGE = 1e-12
@@ -76,7 +76,10 @@ def fit_rank_one(
     def left(values: FloatArray) -> FloatArray:
         return _projected(peak, *_unpacked(peak, values, pivot))[1]
 
-    found = least_squares(left, start, method="lm", max_nfev=_EVALUATIONS * start.size)
+    def slopes(values: FloatArray) -> FloatArray:
+        return _slopes(peak, *_unpacked(peak, values, pivot), pivot)
+
+    found = least_squares(left, start, slopes, method="lm", max_nfev=_EVALUATIONS)
     poles, references = _unpacked(peak, found.x, pivot)
     shape = _projected(peak, poles, references)[0]
     return RankOneModes(poles, shape, references, 2.0 * float(found.cost), found.x)
@@ -107,18 +110,77 @@ def _projected(
     peak: PeakLines, pole: ComplexArray, reference: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
     """Solve for the shapes; return them and the whitened residual."""
-    columns = _columns(peak, pole, reference)
-    rows = np.concatenate((columns.real, columns.imag))
-    weight = np.tile((1.0 / peak.sd).reshape(peak.sd.shape[0], -1), 2)
+    weight, scaled = _weighed(peak, _columns(peak, pole, reference))
     flat = peak.response.reshape(weight.shape[0], -1)
     data = np.concatenate((flat.real, flat.imag), axis=1) * weight
-    scaled = rows * weight[:, :, None]
-    gram = scaled.transpose(0, 2, 1) @ scaled
-    right = scaled.transpose(0, 2, 1) @ data[:, :, None]
-    found = (inverses(gram) @ right)[:, :, 0]
-    left = data - (scaled @ found[:, :, None])[:, :, 0]
-    shapes = np.ascontiguousarray(found).view(np.complex128)
+    found, left = _solved(scaled, data[:, :, None])
+    shapes = np.ascontiguousarray(found[:, :, 0]).view(np.complex128)
     return np.asarray(shapes.T), left.ravel()
+
+
+def _slopes(
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray, pivot: np.ndarray
+) -> FloatArray:
+    """Return the slopes of the whitened residual, shape (n_residuals, n_parameters).
+
+    Without the change of the pseudo-inverse, whose part of the gradient vanishes
+    (Kaufman, BIT 15 (1975) 49-57).
+    """
+    shape = _projected(peak, pole, reference)[0]
+    weight, scaled = _weighed(peak, _columns(peak, pole, reference))
+    moved = _moved(peak, pole, reference, shape, pivot)
+    both = np.concatenate((moved.real, moved.imag), axis=1) * weight[:, :, None]
+    left = _solved(scaled, both)[1]
+    return np.asarray(-left.reshape(-1, left.shape[2]))
+
+
+def _weighed(peak: PeakLines, columns: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Return one over the sd, and the columns of each row times it."""
+    weight = np.tile((1.0 / peak.sd).reshape(peak.sd.shape[0], -1), 2)
+    return weight, np.concatenate((columns.real, columns.imag)) * weight[:, :, None]
+
+
+def _solved(scaled: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least-squares solution of each row, and what it leaves."""
+    turned = scaled.transpose(0, 2, 1)
+    found = inverses(turned @ scaled) @ (turned @ data)
+    return found, data - scaled @ found
+
+
+def _moved(
+    peak: PeakLines,
+    pole: ComplexArray,
+    reference: ComplexArray,
+    shape: ComplexArray,
+    pivot: np.ndarray,
+) -> ComplexArray:
+    """Return the synthesis' slopes by the parameters at fixed shapes.
+
+    Returns:
+        Shape (n_rows, n_references n_lines, n_parameters).
+    """
+    power = peak.laplace**peak.derivatives
+    inverse = 1.0 / (peak.laplace[:, None] - pole)
+    mirrored = 1.0 / (peak.laplace[:, None] - pole.conj())
+    residue = shape[:, :, None] * reference[:, None]
+    parts: list[ComplexArray] = []
+
+    def add(matrix: ComplexArray, own: ComplexArray, image: ComplexArray) -> None:
+        """Add the slopes by Re and Im of a parameter, image that of its conjugate."""
+        one = matrix[..., None] * (power * own)
+        other = matrix.conj()[..., None] * (power * image)
+        parts.extend((one + other, 1j * (one - other)))
+
+    for number in range(pole.size):
+        square = inverse[:, number] ** 2, mirrored[:, number] ** 2
+        add(residue[number] * peak.width, *square)
+    for number, column in np.ndindex(reference.shape):
+        if column != pivot[number]:
+            unit = np.zeros(residue.shape[1:], complex)
+            unit[:, column] = shape[number]
+            add(unit, inverse[:, number], mirrored[:, number])
+    rows, columns, lines = parts[0].shape
+    return np.stack(parts, axis=-1).reshape(rows, columns * lines, -1)
 
 
 def _columns(

@@ -63,6 +63,78 @@ def identify_command(
     return 0 if fits else EXIT_QUALITY
 
 
+def export_joint_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL", help="Model (TOML): meshed bodies with [joints]."
+        ),
+    ],
+    identified: Annotated[
+        Path,
+        typer.Argument(
+            metavar="JSON", help="Identified joints: 'jointbench identify --json'."
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option(metavar="FOLDER", help="Folder that takes the files.")
+    ],
+    to: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,...",
+            help="Programs: table, ansys, abaqus, nastran, calculix; default all.",
+        ),
+    ] = None,
+    joint: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Joint; default the only one.")
+    ] = None,
+    state: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="State, where several were identified."),
+    ] = None,
+    pieces: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TERM,...",
+            help="Numbers of pieces along the two tangents, as 4,3; default one for "
+            "each patch.",
+        ),
+    ] = None,
+    law: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PATH",
+            help="Law of slip or damping to add, of 'jointbench gap --json'; after a "
+            "colon its direction, default tangential_1.",
+        ),
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Compute the model with CalculiX (ccx).")
+    ] = False,
+    debug: Debug = False,
+) -> int:
+    """Write an identified joint for finite element programs.
+
+    For Ansys, Abaqus, Nastran and CalculiX, and as tables: stiffness and damping with
+    uncertainties, as springs of six components between pieces of the two bodies, and
+    node by node; each file is read back.
+
+    Examples:
+        jointbench export-joint plates.toml joint.json --out joint/
+        jointbench export-joint plates.toml joint.json --out joint/ --to calculix
+        --check
+    """
+    from jointbench.station.joint_files.run_export_joint import (
+        ExportRequest,
+        run_export_joint,
+    )
+
+    request = ExportRequest(joint, state, to, pieces, law, check)
+    good = run_export_joint(model, identified, out, request)
+    return 0 if good else EXIT_QUALITY
+
+
 def gap_command(
     sources: GapSources,
     model: Model = None,

@@ -89,6 +89,7 @@ def scaled_structure(structure: Structure, factors: Mapping[str, float]) -> Stru
     return replace(
         structure,
         stiffness=_rows_times(structure.stiffness, scale),
+        springs=_rows_times(structure.springs, scale),
         glue=_rows_times(structure.glue, scale),
     )
 

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: MIT
+"""The values of joints from the JSON of ``identify`` and from the model file."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import BadData, FormatError, UsageError
+from jointbench.analysis.lumped.identified import JointParameter
+from jointbench.analysis.structures.identification.sensor_masses import is_mass
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.body_moduli import is_modulus
+from jointbench.analysis.structures.reduction.predict_modes import JointValues
+from jointbench.station.joints.structure_tables import IdentifyTable
+
+_MOST_BYTES = 50_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StateValues:
+    """All values of one state.
+
+    Attributes:
+        label: of the state; empty where the parameters name none.
+        joints: totals of every joint and direction.
+        moduli: factors by the name of the body.
+        masses: factors by the name of the sensor.
+        parameters: of the joints of this state, as identified or known.
+        predicted: elastic natural frequencies that ``identify`` wrote [Hz].
+    """
+
+    label: str
+    joints: JointValues
+    moduli: Mapping[str, float]
+    masses: Mapping[str, float]
+    parameters: tuple[JointParameter, ...]
+
+    def of_joint(self, name: str) -> tuple[JointParameter, ...]:
+        """Return the parameters of one joint."""
+        return tuple(
+            one
+            for one in self.parameters
+            if one.name.rpartition(":")[2].partition(".")[0] == name
+        )
+
+
+def read_identified(path: Path) -> dict[str, JointParameter]:
+    """Read the parameters of the JSON of ``identify``.
+
+    Raises:
+        FormatError: the file is no such JSON.
+    """
+    if not path.is_file():
+        raise FormatError(f"{path}: no such file; run 'jointbench identify --json'")
+    if path.stat().st_size > _MOST_BYTES:
+        raise FormatError(f"{path}: larger than {_MOST_BYTES} bytes")
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        return {
+            name: _parameter(name, one) for name, one in content["parameters"].items()
+        }
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FormatError(
+            f"{path}: no parameters as 'jointbench identify --json' writes them "
+            f"({error!r})"
+        ) from error
+
+
+def state_values(
+    found: Mapping[str, JointParameter],
+    structure: Structure,
+    table: IdentifyTable,
+    label: str | None = None,
+) -> StateValues:
+    """Return the values of one state.
+
+    Args:
+        found: parameters by name.
+        structure: that they belong to.
+        table: of the model, with the stiffnesses that were not sought.
+        label: of the state; None where there is one only.
+
+    Raises:
+        BadData: the JSON belongs to another model.
+        UsageError: there are several states, or none of that name.
+    """
+    label = _label(found, label)
+    stiffness, damping = [], []
+    parameters: list[JointParameter] = []
+    for name in structure.parameter_names:
+        one = _own(found, label, f"{name}_stiffness")
+        if one is None:
+            one = _known(name, table)
+        loss = _own(found, label, f"{name}_damping")
+        stiffness.append(one.value)
+        damping.append(0.0 if loss is None else loss.value)
+        parameters += [one] if loss is None else [one, loss]
+    return StateValues(
+        label,
+        JointValues(np.array(stiffness), np.array(damping)),
+        {n.rpartition(".")[0]: p.value for n, p in found.items() if is_modulus(n)},
+        {n.rpartition(".")[0]: p.value for n, p in found.items() if is_mass(n)},
+        tuple(parameters),
+    )
+
+
+def _label(found: Mapping[str, JointParameter], label: str | None) -> str:
+    labels = list(dict.fromkeys(n.rpartition(":")[0] for n in found if ":" in n))
+    if label is None and len(labels) > 1:
+        raise UsageError(f"the file holds the states {labels}; choose one with --state")
+    if label is not None and label not in labels:
+        raise UsageError(f"no state {label!r}; the file holds {labels or 'one only'}")
+    return label or (labels[0] if labels else "")
+
+
+def _own(
+    found: Mapping[str, JointParameter], label: str, name: str
+) -> JointParameter | None:
+    return found.get(f"{label}:{name}", found.get(name))
+
+
+def _known(name: str, table: IdentifyTable) -> JointParameter:
+    value = table.known.get(name)
+    if value is None:
+        raise BadData(
+            f"the file of parameters holds no {name}_stiffness, and identify.known of "
+            "the model neither; identify this model, and give the JSON of that run"
+        )
+    return JointParameter(
+        f"{name}_stiffness", value, None, "N/m", True, "known, not identified"
+    )
+
+
+def _parameter(name: str, one: Mapping[str, Any]) -> JointParameter:
+    low, high = one["interval_95"]
+    value = float(one["value"])
+    if not (np.isfinite(value) and value >= 0):
+        raise ValueError(f"{name} is {value}")
+    return JointParameter(
+        name,
+        value,
+        None if one["sd"] is None else float(one["sd"]),
+        str(one["unit"]),
+        bool(one["identifiable"]),
+        str(one.get("reason", "")),
+        (None if low is None else float(low), None if high is None else float(high)),
+    )

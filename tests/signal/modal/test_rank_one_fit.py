@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""Modes of rank one fitted to the lines around a peak."""
+
+import numpy as np
+import pytest
+
+from jointbench.acquisition.basics.arrays import ComplexArray
+from jointbench.signal.modal.rank_one_fit import PeakLines, fit_rank_one
+
+POLES: ComplexArray = np.array([-3.0 + 625.0j, -4.0 + 630.0j])
+REFERENCES = np.array([[1.0, 0.4 - 0.2j, 0.3], [-0.5, 1.0, 0.2 + 0.1j]], np.complex128)
+STEP: ComplexArray = np.array([1.0j, -1.0 + 0.0j])
+NOISE = 0.01
+
+
+@pytest.fixture
+def peak() -> PeakLines:
+    """Return two modes within a half-power width, five outputs, three references."""
+    rng = np.random.default_rng(1)
+    shape = rng.normal(size=(2, 5)) + 0.1j * rng.normal(size=(2, 5))
+    s = 2j * np.pi * np.linspace(95.0, 105.0, 60)
+    response: ComplexArray = np.zeros((5, 3, s.size), complex)
+    for pole, row, reference in zip(POLES, shape, REFERENCES, strict=True):
+        residue = (row[:, None] * reference)[:, :, None]
+        response += s**2 * (residue / (s - pole) + residue.conj() / (s - pole.conj()))
+    sd = np.full(response.shape, NOISE * float(np.abs(response).max()))
+    error = rng.normal(size=(2, *response.shape))
+    noisy = np.asarray(response + sd * (error[0] + 1j * error[1]), np.complex128)
+    return PeakLines(np.asarray(s, np.complex128), noisy, sd, 2, 3.5)
+
+
+@pytest.mark.parametrize("moved", [-1.5, 0.5, 1.5])
+def test_the_search_ends_at_one_optimum(peak: PeakLines, moved: float) -> None:
+    """From starts up to a third of their distance away, and references turned."""
+    best = fit_rank_one(peak, POLES, REFERENCES)
+    turned = (REFERENCES * np.exp(0.3j * moved * np.arange(3))).astype(np.complex128)
+    found = fit_rank_one(peak, POLES + moved * STEP, turned)
+    assert found.cost == pytest.approx(best.cost, rel=1e-6)
+    assert found.pole == pytest.approx(best.pole, abs=1e-3)
+
+
+def test_two_modes_at_one_peak_come_out_at_the_noise(peak: PeakLines) -> None:
+    """Chi-squared per value is one; the poles are the true ones."""
+    found = fit_rank_one(peak, POLES + np.array([2.0j, -2.0j]), REFERENCES)
+    assert found.cost / (2.0 * peak.response.size) == pytest.approx(1.0, abs=0.1)
+    assert found.pole == pytest.approx(POLES, abs=0.1)
