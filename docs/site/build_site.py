@@ -11,6 +11,7 @@ fit, the references of commands and library are generated, and the tables of
 import argparse
 import inspect
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -45,7 +46,9 @@ def main() -> int:
     # JSON is YAML as well, and needs no writer.
     config.write_text(json.dumps(settings(staged / "docs", out), indent=1), "utf-8")
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", str(config)]
-    done = subprocess.run([*command, "--quiet"], check=False).returncode
+    # The builder advertises a successor on every run.
+    quiet = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
+    done = subprocess.run([*command, "--quiet"], env=quiet, check=False).returncode
     if not done:
         shutil.rmtree(staged)
     return done
@@ -61,6 +64,7 @@ def stage(docs: Path) -> None:
         name = "pages.md" if place.as_posix() == "README.md" else place
         copy(path, docs / name, days.get(path.relative_to(ROOT).as_posix(), ""))
     copy(ROOT / "README.md", docs / "index.md")
+    copy(Path(__file__).with_name("site.css"), docs / "site.css")
     for name in OUTSIDE:
         if (ROOT / name).exists():
             copy(ROOT / name, docs / name)
@@ -199,6 +203,7 @@ def settings(docs: Path, out: Path) -> dict[str, object]:
             "features": ["navigation.tabs", "navigation.top", "search.highlight"],
             "palette": [{"scheme": "default", "primary": "blue grey"}],
         },
+        # Not `offline`: its search without a server loads a script of others.
         "plugins": ["search"],
         "extra_css": ["site.css"],
         "markdown_extensions": [

@@ -1,4 +1,4 @@
-"""Example data: every set is whole, is written out once, and comes from its maker."""
+"""Example data: every set is whole, is written out once, and is made by its script."""
 
 from pathlib import Path
 
