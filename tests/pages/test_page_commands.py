@@ -54,7 +54,7 @@ def run(one: PageCommand, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(sys, "argv", rest)
         runpy.run_path(rest[0], run_name="__main__")
     else:
-        assert program == "jointbench", f"no comment gives the reason why it is not run: {one.text}"
+        assert program == "jointbench", f"give the reason in a comment: {one.text}"
         monkeypatch.setattr(sys, "argv", one.words)
         code = exit_code(app, debug=True)
         wanted = {QUALITY} if "exit code 5" in one.remark else {0, None}
