@@ -26,6 +26,9 @@ from jointbench.signal.modal.lsfd import fit_residues, pole_significance
 _CHANCE = 1e-6
 # FRFs that are looked at first: where they need every mode, so do all.
 _FIRST_FRFS = 12
+# Distance over the half-power half-width below which one pole does for two. Repeated
+# roots come as two candidates 1e-4 apart, either of which alone is hardly needed.
+_ONE_PLACE = 0.5
 
 
 def least_significance(lines: FrfLines) -> float:
@@ -71,10 +74,19 @@ def needed(
         if not weak.any():
             break
         # Weak poles may replace each other: only the weakest is dropped, and those far
-        # below the limit.
+        # below the limit, of poles at one place again the weakest.
         weak &= found <= max(0.1 * limit, float(found[weak].min()))
+        weak &= ~_replaced(pole[left], found, weak)
         left = left[~weak]
     return left
+
+
+def _replaced(pole: ComplexArray, found: FloatArray, weak: BoolArray) -> BoolArray:
+    """Return which poles stand in for a weaker one that is about to be dropped."""
+    rank = np.argsort(np.argsort(found, kind="stable"))
+    half, apart = np.abs(pole.real), np.abs(pole[:, None] - pole)
+    near = apart < _ONE_PLACE * np.minimum(half[:, None], half)
+    return np.asarray(np.any(near & weak & (rank < rank[:, None]), axis=1))
 
 
 def _all_needed(

@@ -23,6 +23,7 @@ GENERATED = ROOT / "docs" / "command-line.md"
 """The page of first examples of the help, which has no comments."""
 OF_COMMANDS = {
     "demo": "takes minutes",
+    "export-joint": "takes minutes",
     "measure": "needs hardware",
     "profile": "needs hardware",
     "recover": "needs an interrupted recording",

@@ -1,5 +1,6 @@
 """Every command of README, pages and examples runs from an empty folder."""
 
+import re
 import runpy
 import sys
 from pathlib import Path
@@ -72,6 +73,15 @@ def test_the_first_examples_of_the_help_run_on_some_page() -> None:
         if one.text not in known and one.words[1] not in OF_COMMANDS
     ]
     assert not missing
+
+
+def test_blocks_of_commands_are_marked_as_such() -> None:
+    """A block without a language would never be run."""
+    plain = re.compile(r"^```\n(?:python |\.?venv|jointbench )", re.MULTILINE)
+    for path in (ROOT / "docs").glob("*.md"):
+        blocks = re.split(r"^```", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        begun = [f"```{one}" for one in blocks[1::2]]
+        assert not [one for one in begun if plain.match(one)], path.name
 
 
 def table() -> str:

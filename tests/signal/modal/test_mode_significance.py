@@ -35,3 +35,15 @@ def test_a_few_frfs_decide_as_all_do(
     monkeypatch.setattr(mode_significance, "_FIRST_FRFS", 1000)
     assert quick.tolist() == needed(*given).tolist()
     assert quick.size == (2 if size > 1e-4 else 1)
+
+
+def test_of_two_candidates_at_one_mode_one_is_left(
+    structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
+) -> None:
+    """Either of them alone is hardly needed; both were dropped once."""
+    truth = structure((300.0, 600.0), (0.01, 0.01))
+    lines = lines_of(noisy_frf(truth, LINES, noise=0.01, seed=2), LINES > 0.0)
+    poles = np.append(truth.poles, truth.poles * (1.0 + 1e-6))
+    noise = roughness(lines.response)
+    left = needed(lines, poles, np.zeros(4, bool), noise, noise, NONE)
+    assert sorted(left % 2) == [0, 1]

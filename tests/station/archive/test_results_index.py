@@ -53,7 +53,7 @@ def test_a_result_that_changed_is_read_again(made: Path, tmp_path: Path) -> None
 def test_a_damaged_index_costs_time_and_nothing_else(
     made: Path, tmp_path: Path
 ) -> None:
-    """Lines that were cut short or changed are passed over, and noted anew."""
+    """Lines that were cut short or changed are passed over, and noted again."""
     copy, index = tmp_path / made.name, tmp_path / INDEX_NAME
     copy.write_bytes(made.read_bytes())
     read_indexed([copy])
