@@ -37,7 +37,7 @@ def note_result(path: Path) -> None:
     the index saves time, nothing rests on it.
     """
     with suppress(BadData, OSError):
-        _note(path, read_result(path, verify=False))
+        append_to_index(path, read_result(path, verify=False))
 
 
 def read_indexed(
@@ -68,12 +68,20 @@ def read_indexed(
 def _read(path: Path) -> StoredResult:
     result = read_result(path)
     with suppress(OSError):
-        _note(path, result)
+        append_to_index(path, result)
     return result
 
 
-def _note(path: Path, result: StoredResult) -> None:
-    """Append a line in one piece: several processes write to one index."""
+def append_to_index(path: Path, result: StoredResult) -> None:
+    """Append a line in one piece: several processes write to one index.
+
+    Args:
+        path: of the results file.
+        result: what it holds.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
     line: dict[str, Any] = {
         "file": path.name,
         "mark": list(mark_of(path)),
