@@ -24,7 +24,7 @@ PYTHON = "3.12"
 
 
 def resolve(tags: tuple[str, ...], wanted: list[str]) -> tuple[list[str], str]:
-    """Return the wheels of a system, and what pip says where there is none."""
+    """Return the wheels of a system, or the error of pip."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         command = [sys.executable, "-m", "pip", "install", "--dry-run", "--quiet"]
