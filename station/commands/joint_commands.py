@@ -7,7 +7,12 @@ from typing import Annotated
 import typer
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.station.commands.shared_options.input_options import Preload, Sessions
+from jointbench.station.commands.shared_options.input_options import (
+    Averages,
+    Columns,
+    Preload,
+    Sessions,
+)
 from jointbench.station.commands.shared_options.joint_options import (
     Cache,
     ChainSurfaces,
@@ -35,6 +40,8 @@ def identify_command(
     ],
     sessions: Sessions = None,
     band: Band = None,
+    columns: Columns = None,
+    averages: Averages = None,
     cache: Cache = None,
     surface: ContactSurfaces = None,
     report: HtmlReport = None,
@@ -44,13 +51,16 @@ def identify_command(
     """Identify stiffness and damping of joints from modes.
 
     Stiffness [N/m] and damping [N s/m] have standard deviations. A parameter that
-    the measurement does not determine is reported with the reason.
+    the measurement does not determine is reported with the reason. FRFs are fitted
+    first; a file of FRFs is one state of the joints.
 
     Examples:
         jointbench identify bench.toml session.h5 --json joint.json
+        jointbench identify bench.toml frf.uff --averages 5
         jointbench identify plates.toml session.h5 --surface face-a.csv
         --surface face-b.csv --report joints.html
     """
+    from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
     from jointbench.station.commands.identify_links_command import identify_any
 
     fits = identify_any(
@@ -61,6 +71,7 @@ def identify_command(
         report=report,
         json_target=json,
         surfaces=surface or [],
+        options=FrfOptions(columns, averages=averages or 0),
     )
     return 0 if fits else EXIT_QUALITY
 

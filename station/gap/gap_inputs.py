@@ -29,6 +29,7 @@ from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.contact_section import contact_sections
+from jointbench.station.gap.frf_levels import refuse_frfs
 from jointbench.station.gap.joint_state_files import names_states, read_joint
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
@@ -124,6 +125,7 @@ def examine(
     if paths[0].suffix.lower() == ".toml":
         return _examine_named(paths, wanted, progress)
     refuse_twice(paths)
+    refuse_frfs(paths, wanted.model)
     if any(path.suffix.lower() == ".mat" for path in paths):
         return _examine_record(paths, wanted, progress)
     if not is_session_name(paths[0]):
