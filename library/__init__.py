@@ -11,7 +11,7 @@
     modes.to_xarray()               # labelled arrays with units
 
 Each function takes files or records and returns a record; nothing is printed, and
-only `record`, `process` and `report` write files. Errors are those of
+only `example`, `record`, `process` and `report` write files. Errors are those of
 `jointbench.acquisition.basics.errors`: one line with the cause and a remedy. The
 functions load their modules at the first call, so that the import costs nothing.
 """
@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from jointbench.station.library.archives import archive, process
     from jointbench.station.library.contact_laws import contact
+    from jointbench.station.library.example_files import example
     from jointbench.station.library.frf_results import frf
     from jointbench.station.library.gaps import gap
     from jointbench.station.library.hit_results import hits
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "archive": ("archives", "archive"),
     "contact": ("contact_laws", "contact"),
+    "example": ("example_files", "example"),
     "frf": ("frf_results", "frf"),
     "gap": ("gaps", "gap"),
     "hits": ("hit_results", "hits"),
@@ -52,6 +54,7 @@ _PLACES = {
 __all__ = [
     "archive",
     "contact",
+    "example",
     "frf",
     "gap",
     "hits",

@@ -24,8 +24,10 @@ from jointbench.station.commands.contact_command import (
     pressure_map_command,
 )
 from jointbench.station.commands.file_commands import (
+    example_command,
     export_command,
     inspect_command,
+    provenance_command,
     recover_command,
     verify_command,
 )
@@ -94,7 +96,9 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "gap": gap_command,
     },
     "Files": {
+        "example": example_command,
         "inspect": inspect_command,
+        "provenance": provenance_command,
         "verify": verify_command,
         "recover": recover_command,
         "export": export_command,
@@ -154,8 +158,7 @@ def _jointbench(
 
     Examples:
         jointbench demo --out demo-out
-        jointbench import hit1.npy hit2.npy --out session.h5 --columns
-        'time:s,force:N,acceleration:m/s^2'
+        jointbench example joint
         jointbench modal session.h5
     """
 

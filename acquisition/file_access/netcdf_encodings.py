@@ -63,6 +63,31 @@ def write_texts(
     )
 
 
+def write_labels(
+    group: h5py.Group, name: str, texts: Sequence[str], *, long_name: str
+) -> h5py.Dataset:
+    """Write the coordinate of a dimension whose places have names.
+
+    Texts of a fixed length, one a place: a coordinate has the one dimension of its
+    name, which a table of characters has not. Readers of netCDF-4 take it as strings.
+
+    Raises:
+        BadData: a text cannot be stored without loss.
+    """
+    coded = [encode_text(text, name) for text in texts]
+    # One byte wide, it would be read as a table of characters.
+    kind = h5py.string_dtype("utf-8", max([2, *map(len, coded)]))
+    dataset = group.create_dataset(name, data=np.array(coded, dtype=kind), dtype=kind)
+    dataset.make_scale(name)
+    write_attributes(dataset, {"long_name": long_name})
+    return dataset
+
+
+def units_of_rows(units: Sequence[str]) -> str:
+    """Return the unit of a variable whose rows have their own: one, or one a row."""
+    return units[0] if len(set(units)) == 1 else ", ".join(units)
+
+
 def write_complex(
     group: h5py.Group,
     name: str,

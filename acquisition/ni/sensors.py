@@ -44,6 +44,8 @@ class Sensor:
         calibrated: day of the last calibration, None if not stated.
         calibration_months: how long a calibration holds.
         noise: rms of its noise by its data sheet [SI unit], None if not stated.
+        certificate: number of the calibration certificate, empty if not stated.
+        sensitivity_sd: relative standard uncertainty of the sensitivity [-], or None.
     """
 
     name: str
@@ -58,6 +60,27 @@ class Sensor:
     calibrated: date | None = None
     calibration_months: int = 12
     noise: float | None = None
+    certificate: str = ""
+    sensitivity_sd: float | None = None
+
+
+def sensor_entry(sensor: Sensor) -> dict[str, object]:
+    """Return what the log of a session says of a sensor and its calibration."""
+    facts: dict[str, object] = {
+        "kind": "sensor",
+        "name": sensor.name,
+        "quantity": sensor.quantity.value,
+        "serial": sensor.serial,
+        "certificate": sensor.certificate,
+    }
+    if sensor.calibrated is not None:
+        facts |= {
+            "calibrated": sensor.calibrated.isoformat(),
+            "due": _due(sensor.calibrated, sensor.calibration_months).isoformat(),
+        }
+    if sensor.sensitivity_sd is not None:
+        facts["sensitivity_sd"] = sensor.sensitivity_sd
+    return facts
 
 
 def require_unique(sensors: Sequence[Sensor]) -> None:
@@ -159,13 +182,18 @@ def calibration_warning(sensor: Sensor, today: date) -> str | None:
     """Return a warning on the calibration of a sensor, or None."""
     if sensor.calibrated is None:
         return f"sensor {sensor.name!r}: no calibration date is stated"
-    months = sensor.calibrated.month - 1 + sensor.calibration_months
-    year, month = sensor.calibrated.year + months // 12, months % 12 + 1
-    # In short months the last day is used.
-    due = date(year, month, min(sensor.calibrated.day, 28))
+    due = _due(sensor.calibrated, sensor.calibration_months)
     if today <= due:
         return None
     return (
         f"sensor {sensor.name!r} ({sensor.serial or 'no serial number'}): calibrated "
         f"{sensor.calibrated.isoformat()}, due {due.isoformat()}; have it calibrated"
     )
+
+
+def _due(calibrated: date, months_valid: int) -> date:
+    """Return the day until which a calibration holds."""
+    months = calibrated.month - 1 + months_valid
+    year, month = calibrated.year + months // 12, months % 12 + 1
+    # The 28th, which every month has.
+    return date(year, month, min(calibrated.day, 28))

@@ -3,16 +3,18 @@
 
 Each recording is one group that xarray can open::
 
-    /stream/<recording>   samples (channel, time), time, and one row a channel of
-                          channel_name, quantity, point, direction, unit, ...;
-                          attribute preload [N] where it is this recording's own
+    /stream/<recording>   samples (channel, time), its coordinates time and channel
+                          (names), and one row a channel of channel_name, quantity,
+                          point, direction, unit, ...; attribute preload [N] where it
+                          is this recording's own
     /hits/<recording>     start, trigger, stop, peak_force, verdict, reason (hit)
 
 The time axis is a plain coordinate for readers, but stored as integers with
 `scale_factor` and `add_offset`: a ramp of small integers compresses to almost nothing,
 a ramp of doubles to a third of the size of the samples. The sample rate is read from
 the attribute `sample_rate`. Samples are doubles, or single precision if that is
-lossless.
+lossless. The attribute `units` of the samples is their unit, or one unit a channel
+separated by commas (docs/decisions/0314-units-and-names-of-channels.md).
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -26,7 +28,12 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UnitError
 from jointbench.acquisition.basics.units import example_unit
 from jointbench.acquisition.file_access.hdf5_layout import find_group
-from jointbench.acquisition.file_access.netcdf_encodings import write_flags, write_texts
+from jointbench.acquisition.file_access.netcdf_encodings import (
+    units_of_rows,
+    write_flags,
+    write_labels,
+    write_texts,
+)
 from jointbench.acquisition.file_access.netcdf_read import (
     read_array,
     read_attribute,
@@ -68,7 +75,7 @@ def write_recording(file: h5py.File, recording: Recording, position: int) -> Non
         raise BadData(f"recording {recording.name!r} holds no samples; leave it out")
     group = _begin_recording(file, recording, position, recording.samples.shape[1])
     values = narrowest(np.asarray(recording.samples))
-    _make_samples(group, values.shape, values.dtype)[...] = values
+    _make_samples(group, recording, values.shape, values.dtype)[...] = values
     _end_recording(file, group, recording)
 
 
@@ -94,7 +101,7 @@ def write_recording_in_pieces(
     """
     group = _begin_recording(file, recording, position, count)
     shape = (len(recording.channels), count)
-    dataset = _make_samples(group, shape, np.dtype(np.float32))
+    dataset = _make_samples(group, recording, shape, np.dtype(np.float32))
     done = 0
     for piece in pieces:
         dataset[:, done : done + piece.shape[1]] = piece
@@ -131,15 +138,21 @@ def _begin_recording(
 
 
 def _make_samples(
-    group: h5py.Group, shape: tuple[int, ...], dtype: np.dtype[Any]
+    group: h5py.Group,
+    recording: Recording,
+    shape: tuple[int, ...],
+    dtype: np.dtype[Any],
 ) -> h5py.Dataset:
+    names = [channel.name for channel in recording.channels]
+    write_labels(group, "channel", names, long_name="name of the channel")
     return make_variable(
         group,
         "samples",
         (shape, dtype),
         ("channel", "time"),
+        units=units_of_rows(_si_units(recording.channels)),
         long_name="samples, each channel in its si_unit",
-        attributes={"coordinates": "channel_name"},
+        attributes={"coordinates": "channel_name quantity point direction si_unit"},
     )
 
 
@@ -240,16 +253,29 @@ def _write_channels(group: h5py.Group, channels: Sequence[Channel]) -> None:
         "unit": ("unit it was recorded in", [c.unit for c in channels]),
         "si_unit": (
             "unit of the stored samples",
-            [example_unit(c.quantity) for c in channels],
+            _si_units(channels),
         ),
     }
     for name, (long_name, values) in texts.items():
         write_texts(group, name, values, "channel", long_name=long_name)
-    for name, long_name, given in (
-        ("sensitivity", "[V per SI unit], NaN if not stated", _sensitivities(channels)),
-        ("range", "largest value [SI unit], NaN if unknown", _ranges(channels)),
+    units = _si_units(channels)
+    for name, long_name, given, own in (
+        (
+            "sensitivity",
+            "[V per SI unit], NaN if not stated",
+            _sensitivities(channels),
+            [f"V/({unit})" for unit in units],
+        ),
+        ("range", "largest value, NaN if unknown", _ranges(channels), units),
     ):
-        write_variable(group, name, given, ("channel",), long_name=long_name)
+        unit = units_of_rows(own)
+        write_variable(
+            group, name, given, ("channel",), units=unit, long_name=long_name
+        )
+
+
+def _si_units(channels: Sequence[Channel]) -> list[str]:
+    return [example_unit(channel.quantity) for channel in channels]
 
 
 def _sensitivities(channels: Sequence[Channel]) -> FloatArray:
@@ -298,7 +324,7 @@ def _write_hits(file: h5py.File, stream: h5py.Group, recording: Recording) -> No
     )
     measures = [float(hit.measure) for hit in hits]
     words = "number of the verdict, see reason"
-    write_variable(group, "measure", measures, ("hit",), long_name=words)
+    write_variable(group, "measure", measures, ("hit",), units="1", long_name=words)
     for key, long_name, texts in (
         ("point", "where the hammer struck", [hit.point for hit in hits]),
         ("reason", "rule met or broken", [hit.reason for hit in hits]),

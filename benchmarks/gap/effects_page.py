@@ -27,9 +27,9 @@ FURTHER = """## Further laws of real joints
 
 Each contains a simpler law, or imitates one within noise, and is tried on request:
 
-```
-jointbench gap campaign.h5 --with bouc_wen_free,iwan_segalman
-jointbench gap campaign.h5 --with real_joints                    # all six
+```sh
+jointbench gap session.h5 --model bench.toml --with bouc_wen_free   # takes minutes
+jointbench gap session.h5 --model bench.toml --with real_joints   # takes minutes
 ```
 
 In Python: `diagnose(campaign, entries=with_real_joints(CATALOGUE, ["clearance"]))`. At

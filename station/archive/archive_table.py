@@ -22,6 +22,7 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.station.files.output_paths import whole_file, write_text
 from jointbench.station.files.spreadsheet_text import escaped
 from jointbench.station.files.table_files import ExportColumn, ExportTable, write_mat
+from jointbench.station.results.processed_file import OF_EACH_ROW
 from jointbench.station.results.results_read import (
     StoredResult,
     read_result,
@@ -174,12 +175,14 @@ def _number(value: float) -> str:
 
 def _write_netcdf(path: Path, rows: Sequence[Row]) -> None:
     title = "jointbench: all results of an archive, one row a number"
+    units = {"torque": "N m", "preload": "N", "day": "days since 1970-01-01"}
     with new_signed_file(path, schema=TABLE_SCHEMA, title=title) as file:
         for name, values in _columns(rows).items():
             if isinstance(values[0], str):
                 write_texts(file, name, values, "row", long_name=name)
             else:
-                write_variable(file, name, values, ("row",), long_name=name)
+                own = units.get(name, OF_EACH_ROW)
+                write_variable(file, name, values, ("row",), units=own, long_name=name)
 
 
 def _write_mat(path: Path, rows: Sequence[Row]) -> None:

@@ -30,6 +30,8 @@ from jointbench.acquisition.file_access.text_files import file_digest, file_size
 from jointbench.acquisition.records.session import Session, software_version
 from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.acquisition.session_file.store import damage_named
+from jointbench.station.archive.file_mark import Mark, mark_of
+from jointbench.station.archive.results_index import note_result
 from jointbench.station.pipeline.code_version import stage_version
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.stage_store import StageStore
@@ -38,8 +40,6 @@ from jointbench.station.schemas.recipe import Recipe, recipe_digest
 
 _MOST_BYTES = 64 * 2**30
 """A larger file is no session; reading it for its digest would take an hour [bytes]."""
-_Mark = tuple[int, ...]
-"""Mark of a file's state: inode, size [bytes], time [ns]; empty for no file."""
 
 
 class State(StrEnum):
@@ -82,8 +82,8 @@ class Traces:
     """
 
     input_sha256: str = ""
-    session: _Mark = ()
-    result: _Mark = ()
+    session: Mark = ()
+    result: Mark = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +195,7 @@ def _met(task: Task, recipe: Recipe, key: str, traces: Traces, begun: float) -> 
     return replace(outcome, corrupted=corrupted, traces=own)
 
 
-def _there(task: Task, key: str) -> tuple[_Mark, str]:
+def _there(task: Task, key: str) -> tuple[Mark, str]:
     """Return the mark of a result that is as it should be, and what is wrong with it.
 
     Nothing is wrong with a result of another key, nor where there is none.
@@ -217,23 +217,14 @@ def _digest(path: Path) -> str:
     return file_digest(path)
 
 
-def mark_of(path: Path) -> _Mark:
-    """Return the mark of a file's state; empty where there is none."""
-    try:
-        info = path.stat()
-    except (OSError, ValueError):
-        return ()
-    return info.st_ino, info.st_size, info.st_mtime_ns
-
-
-def _unchanged_session(path: Path, before: _Mark) -> Session:
+def _unchanged_session(path: Path, before: Mark) -> Session:
     """Read a session whose digest was taken when it had the mark `before`."""
     session = open_session(path)
     _require_unchanged(path, before)
     return session
 
 
-def _require_unchanged(path: Path, before: _Mark) -> None:
+def _require_unchanged(path: Path, before: Mark) -> None:
     """Raise OSError if a file no longer has the mark that it had."""
     if mark_of(path) != before:
         raise OSError(errno.EBUSY, "it changed while it was read")
@@ -245,7 +236,7 @@ def _done(
     recipe: Recipe,
     origin: Origin,
     begun: float,
-    before: _Mark,
+    before: Mark,
 ) -> Outcome:
     stages = StageStore(None if task.again else task.stages)
     try:
@@ -260,6 +251,7 @@ def _done(
     except UsageError as error:
         reason, key = str(error), origin.key
         return _failed(task, key, reason, begun, lasting=False, unwritable=True)
+    note_result(task.result)
     return Outcome(
         task.path,
         task.result,

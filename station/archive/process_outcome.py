@@ -7,6 +7,7 @@ from pathlib import Path
 from jointbench.station.archive.process_file import Outcome, State
 from jointbench.station.results.quantities import ResultQuantity
 from jointbench.station.schemas.recipe import Recipe, read_recipe
+from jointbench.station.schemas.stored_recipe import read_stored_recipe
 from jointbench.station.screen.value_text import with_sd
 
 STAGES_FOLDER = ".jointbench-stages"
@@ -18,7 +19,12 @@ def stages_folder(beside: Path) -> Path:
 
 
 def recipe_or_default(path: Path | None) -> Recipe:
-    """Read a recipe; without one, everything is chosen by the data."""
+    """Read a recipe; without one, everything is chosen by the data.
+
+    A .json is the recipe of a result, as `jointbench provenance` writes it.
+    """
+    if path is not None and path.suffix.lower() == ".json":
+        return read_stored_recipe(path)
     return Recipe(name="default") if path is None else read_recipe(path)
 
 

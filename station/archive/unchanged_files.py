@@ -10,12 +10,12 @@ is the work of `process_file`. Damage that leaves size and time alone is found b
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from jointbench.station.archive.file_mark import mark_of
 from jointbench.station.archive.process_file import (
     Outcome,
     State,
     Task,
     Traces,
-    mark_of,
     result_key,
 )
 

@@ -12,11 +12,11 @@ from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.archive.archive_table import (
     Row,
     left_out_words,
-    read_results,
     table_rows,
     write_table,
     writer_of,
 )
+from jointbench.station.archive.results_index import read_indexed
 from jointbench.station.archive.trend_output import trend_rows, trends_json
 from jointbench.station.archive.trends import OVER, Trend, check_trend, trends_of
 from jointbench.station.files.archive_patterns import result_files
@@ -45,7 +45,7 @@ def run_archive(
     if out is not None:
         writer_of(out)
     with working(f"reading {len(paths)} results"):
-        found, refused = read_results(paths)
+        found, refused = read_indexed(paths)
     results, copies = without_copies(found)
     rows = table_rows(results)
     if not rows:

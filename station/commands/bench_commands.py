@@ -41,8 +41,7 @@ def measure_command(
 
     Examples:
         jointbench measure plan.toml --out session.h5 --source ni:
-        jointbench measure examples/plates.toml --out plates.h5 --source
-        'sim:plates?seed=1'
+        jointbench measure plates.toml --out plates.h5 --source 'sim:plates?seed=1'
     """
     # gRPC reports lost connections on standard error; the session reports them itself.
     os.environ.setdefault("GRPC_VERBOSITY", "NONE")
@@ -84,7 +83,8 @@ def record_command(
     Examples:
         jointbench record examples/operating.toml --out spindle.h5
         jointbench record plan.toml --out run.h5 --source ni:
-        jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out session.h5
+        jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out
+        campaign.h5
         jointbench record 'sim:bolted-plates?seed=3&hide=loose_bolt' --out hits.h5
     """
     os.environ.setdefault("GRPC_VERBOSITY", "NONE")

@@ -20,7 +20,7 @@ def contact_command(given: ContactOptions) -> None:
     Examples:
         jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus '29.3 GPa'
         --hardness '1.5 GPa' --load '1 kN' --load '25 kN'
-        jointbench contact --surface surface-a.csv --surface surface-b.csv --modulus
+        jointbench contact --surface face-a.csv --surface face-b.csv --modulus
         '29.3 GPa' --hardness '231 HB' --torque '20 N m' --bolt-diameter '16 mm'
         --bolts 4 --mass '19.5 kg'
         jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus '29.3 GPa'
@@ -42,8 +42,8 @@ def pressure_map_command(given: PressureMapOptions) -> None:
     and the stiffness per area [N/m^3], with waviness apart from roughness.
 
     Examples:
-        jointbench pressure-map a.sur b.sur --modulus '115 GPa' --hardness '231 HB'
-        --pressure '2.5 MPa' --plot pressures.html
+        jointbench pressure-map map-a.csv map-b.csv --modulus '115 GPa' --hardness
+        '231 HB' --pressure '2.5 MPa' --plot pressures.html
         jointbench pressure-map a.csv --columns 'x:mm,y:mm,z:um' --modulus '115 GPa'
         --hardness '2 GPa' --pressure '1 MPa' --pressure '10 MPa' --cutoff '0.25 mm'
     """

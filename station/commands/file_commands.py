@@ -10,6 +10,31 @@ from jointbench.station.commands.shared_options.output_options import Debug, For
 from jointbench.station.screen.exit_codes import EXIT_QUALITY
 
 
+def example_command(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NAME]", help="Example to write; without it they are listed."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Folder to write to; the name by default."),
+    ] = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Write example data with the commands to try on them.
+
+    Examples:
+        jointbench example joint
+        jointbench example archive --out year
+    """
+    from jointbench.station.examples.example_command import run_example
+
+    run_example(name, out, overwrite=force)
+
+
 def inspect_command(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Session or results file (.h5).")
@@ -26,6 +51,34 @@ def inspect_command(
     from jointbench.station.commands.inspect_command import run_inspect
 
     run_inspect(file, json_target=json)
+
+
+def provenance_command(
+    result: Annotated[
+        Path, typer.Argument(metavar="RESULT", help="Results file (.h5).")
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER", help="Folder for all that is needed to run it again."
+        ),
+    ] = None,
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Show where a result comes from; write all to run it again.
+
+    Inputs, recipe, build, versions, kind of computer, calibration of the sensors and
+    the contributions to each standard deviation. No host names, no users, no paths.
+
+    Examples:
+        jointbench provenance session.narrow.results.h5 --out again
+        jointbench provenance session.results.h5 --json provenance.json
+    """
+    from jointbench.station.provenance.provenance_command import run_provenance
+
+    run_provenance(result, folder=out, overwrite=force, json_target=json)
 
 
 def verify_command(

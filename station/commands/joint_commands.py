@@ -57,8 +57,8 @@ def identify_command(
     Examples:
         jointbench identify bench.toml session.h5 --json joint.json
         jointbench identify bench.toml frf.uff --averages 5
-        jointbench identify plates.toml session.h5 --surface surface-a.csv
-        --surface surface-b.csv --report joints.html
+        jointbench identify plates.toml session.h5 --surface face-a.csv
+        --surface face-b.csv --report joints.html
     """
     from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
     from jointbench.station.commands.identify_links_command import identify_any

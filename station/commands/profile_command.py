@@ -67,7 +67,7 @@ def profile_command(
     """Read the last profile of a roughness tester.
 
     Examples:
-        jointbench profile diavite COM3 --traverse '4.8 mm' --out surface-a.csv
+        jointbench profile diavite COM3 --traverse '4.8 mm' --out face-a.csv
         jointbench profile mitutoyo /dev/ttyUSB0 --name surface-b --session session.h5
     """
     from jointbench.station.sources.read_profile import ProfileRequest, run_profile

@@ -80,7 +80,7 @@ def import_command(
     the first hit, and writes only with --yes or on confirmation.
 
     Examples:
-        jointbench import hit1.npy hit2.npy --out session.h5 --columns
+        jointbench import hit1.csv hit2.csv hit3.csv --out session.h5 --columns
         'time:s,force:N,acceleration:m/s^2'
         jointbench import hits.csv --out session.h5 --guess --picture hits.html
         jointbench import trace.txt --out session.h5 --columns 'x:um,z:um'
@@ -206,7 +206,7 @@ def surface_command(
     With --iso: the roughness parameters of ISO 21920 and ISO 25178 as well.
 
     Examples:
-        jointbench surface surface-a.csv surface-b.csv --json surfaces.json
+        jointbench surface face-a.csv face-b.csv --json surfaces.json
         jointbench surface trace.txt --columns 'x:um,z:um' --form 2 --outliers 6
         jointbench surface a.csv b.csv c.csv --filter '2.5 um:0.8 mm' --pool
         jointbench surface map.sur --report map.html

@@ -174,7 +174,7 @@ def reprocess_command(
     A run can be stopped at any time. The same command resumes it.
 
     Examples:
-        jointbench reprocess 'archive/**/*.h5' --recipe narrow.toml --jobs 2
+        jointbench reprocess 'archive/**/*.h5' --recipe archive/narrow.toml --jobs 2
         jointbench reprocess archive/ --scheduler tcp://127.0.0.1:8786
     """
     from jointbench.station.archive.cluster import ClusterSettings
@@ -261,7 +261,8 @@ def compare_command(
     The table lists each quantity whose change exceeds its uncertainty.
 
     Examples:
-        jointbench compare 'a/**/*.old.results.h5' 'a/**/*.new.results.h5'
+        jointbench compare 'archive/**/*.wide.results.h5'
+        'archive/**/*.narrow.results.h5'
     """
     from jointbench.station.commands.compare_command import run_compare
 

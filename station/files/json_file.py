@@ -3,18 +3,20 @@
 
 import json
 from pathlib import Path
+from typing import TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import read_bytes
-from jointbench.station.files.toml_file import Model, first_problem
+from jointbench.station.files.toml_file import first_problem
 
+_Model = TypeVar("_Model", bound=BaseModel)
 _MAX_BYTES = 1_000_000
 
 
-def read_json(path: Path, model: type[Model]) -> Model:
+def read_json(path: Path, model: type[_Model]) -> _Model:
     """Read `path` as `model`.
 
     Raises:

@@ -7,15 +7,23 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    ValidationError,
+    ValidationInfo,
+)
 
 from jointbench.acquisition.basics.errors import BadData, UnitError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.file_access.quoting import named, visible
 from jointbench.station.files.toml_text import load_toml
 
-Model = TypeVar("Model", bound=BaseModel)
+_Model = TypeVar("_Model", bound=BaseModel)
 AUTO, NONE = "auto", "none"
+IN_SI = {"si": True}
+"""Context of a validation whose numbers are in SI units already: stored content."""
 
 
 class StrictTable(BaseModel):
@@ -32,7 +40,9 @@ def with_unit(kind: str, *words: str) -> BeforeValidator:
         words: that may stand in its place: "auto" for None, "none" for 0.
     """
 
-    def parse(value: object) -> float | None:
+    def parse(value: object, info: ValidationInfo) -> float | None:
+        if info.context == IN_SI and isinstance(value, int | float | None):
+            return value
         if isinstance(value, str) and value in words:
             return None if value == AUTO else 0.0
         if not isinstance(value, str):
@@ -49,7 +59,7 @@ def with_unit(kind: str, *words: str) -> BeforeValidator:
     return BeforeValidator(parse)
 
 
-def read_toml(path: Path, model: type[Model]) -> Model:
+def read_toml(path: Path, model: type[_Model]) -> _Model:
     """Read `path` as `model`.
 
     Raises:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.station.archive.archive_table import (
     Row,
-    read_results,
     table_rows,
     write_table,
 )
@@ -19,6 +18,7 @@ from jointbench.station.archive.process_outcome import (
     recipe_or_default,
     stages_folder,
 )
+from jointbench.station.archive.results_index import read_indexed
 from jointbench.station.files.archive_patterns import result_files
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.library.argument_checks import one_path, require_lists
@@ -160,7 +160,7 @@ def archive(results: str | Path | Sequence[str | Path]) -> ResultArchive:
         require_lists("['archive/**/*.results.h5']", results=results)
     given = [results] if isinstance(results, str | Path) else results
     names = [str(one_path(one, "results, a folder or a pattern")) for one in given]
-    found, refused = read_results(result_files(names))
+    found, refused = read_indexed(result_files(names))
     kept, _ = without_copies(found)
     rows = table_rows(kept)
     if not rows:

@@ -18,7 +18,11 @@ from jointbench.acquisition.basics.errors import (
 )
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
-from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
+from jointbench.acquisition.ni.sensors import (
+    calibration_warning,
+    sensor_entry,
+    table_channels,
+)
 from jointbench.acquisition.ni.stream import Counters, StreamSettings
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.recorder.requests import Setup
@@ -221,6 +225,8 @@ def _record(
                     sample_rate=recorder.sample_rate,
                 )
             )
+            for sensor in plan.sensors:
+                recorder.log(sensor_entry(sensor))
             for words in warnings:
                 desk.warn(words)
             session.run()

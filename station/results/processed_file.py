@@ -8,12 +8,14 @@
     /hits         hits as judged now, and what the stored verdict was
     /modal/<n>    frf, synthesis, stabilisation, modes of each preload, as in layout 1
     /surfaces/<n> structure function of each surface
+    /environment  build, versions and kind of computer, as attributes
+    /sensors      calibration of the sensors, where the session states it
     /pages        contact, joint and gap as JSON, rows of 4096 characters
     /stages       names and keys of the stages
     /remarks      what could not be done
 
-Everything but the attributes `created` and `seconds` depends on input, recipe and
-version alone: two runs write the same.
+Everything but `/environment` and the attributes `created` and `seconds` depends on
+input, recipe and version alone: two runs on one computer write the same.
 """
 
 import json
@@ -24,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 import h5py
+import numpy as np
 
 from jointbench.acquisition.file_access.content_digest import new_signed_file
 from jointbench.acquisition.file_access.netcdf_encodings import write_flags, write_texts
@@ -33,17 +36,20 @@ from jointbench.acquisition.file_access.netcdf_write import (
 )
 from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.records.recordings import Recording, Verdict
-from jointbench.acquisition.records.session import software_version
+from jointbench.acquisition.records.session import Session, software_version
 from jointbench.acquisition.session_file.record_groups import free_name
 from jointbench.station.files.session_facts import session_facts
 from jointbench.station.pipeline.judge_again import NOT_THERE, VerdictChange
 from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 from jointbench.station.results.quantities import ResultQuantity, quantities_of
-from jointbench.station.results.results_file import write_modal
+from jointbench.station.results.results_file import write_environment, write_modal
 from jointbench.station.schemas.recipe import Recipe, recipe_content
 
 PROCESSED_SCHEMA = "jointbench-results/2"
+OF_EACH_ROW = "see the variable unit"
+"""In place of the unit of a column whose rows have their own."""
+SENSOR_FACTS = ("name", "quantity", "serial", "certificate", "calibrated", "due")
 LINE = 4096
 """Characters of a line of JSON: a table of texts is as wide as its longest."""
 
@@ -81,6 +87,8 @@ def write_processed(
     title = "jointbench: a recorded session read again under a recipe"
     with new_signed_file(path, schema=PROCESSED_SCHEMA, title=title) as file:
         _write_origin(file, result, recipe, origin)
+        write_environment(file)
+        _write_sensors(file, result.session)
         _write_quantities(file.create_group("quantities"), quantities_of(result))
         if any(result.hits):
             _write_hits(file.create_group("hits"), result)
@@ -124,13 +132,32 @@ def _write_quantities(group: h5py.Group, rows: Sequence[ResultQuantity]) -> None
     ):
         texts = [getattr(row, name) for row in rows]
         write_texts(group, name, texts, "quantity", long_name=words)
-    for name, words in (
-        ("value", "value in its unit, NaN for a word"),
-        ("sd", "standard deviation, NaN where not known"),
-        ("preload", "preload [N], NaN where not known"),
+    for name, units, words in (
+        ("value", OF_EACH_ROW, "value in its unit, NaN for a word"),
+        ("sd", OF_EACH_ROW, "standard deviation, NaN where not known"),
+        ("preload", "N", "preload, NaN where not known"),
     ):
         values = [getattr(row, name) for row in rows]
-        write_variable(group, name, values, ("quantity",), long_name=words)
+        write_variable(group, name, values, ("quantity",), units=units, long_name=words)
+
+
+def _write_sensors(file: h5py.File, session: Session) -> None:
+    """Write what the plan of the session says of its sensors, if it does."""
+    found = [dict(s.detail) for s in session.provenance if s.name == "sensor"]
+    if not found:
+        return
+    group = file.create_group("sensors")
+    for name in SENSOR_FACTS:
+        texts = [str(one.get(name, "")) for one in found]
+        write_texts(group, name, texts, "sensor", long_name=f"{name} of the sensor")
+    write_variable(
+        group,
+        "sensitivity_sd",
+        [float(one.get("sensitivity_sd", np.nan)) for one in found],
+        ("sensor",),
+        units="1",
+        long_name="relative standard uncertainty of the sensitivity, NaN if not stated",
+    )
 
 
 def _write_hits(group: h5py.Group, result: ProcessedSession) -> None:

@@ -25,7 +25,9 @@ from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.records.session import software_version
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modal_model import ModalModel
+from jointbench.signal.modal.mode_ranking import rate_modes
 from jointbench.signal.modal.modes import ModalResult
+from jointbench.station.files.computing_environment import computing_environment
 from jointbench.station.files.input_files import is_session_name
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.results.amplitude_results import write_amplitude
@@ -69,7 +71,13 @@ def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None
                 "input_sha256": "\n".join(file_digest(p) for p in inputs),
             },
         )
+        write_environment(file)
         write_modal(file, chain)
+
+
+def write_environment(file: h5py.File) -> None:
+    """Write what computes a result: build, versions, kind of computer."""
+    write_attributes(file.create_group("environment"), computing_environment())
 
 
 def write_modal(group: h5py.Group, chain: ModalChain) -> None:
@@ -182,9 +190,12 @@ def _write_modes(group: h5py.Group, model: ModalModel) -> None:
 def _write_evidence(group: h5py.Group, result: ModalResult) -> None:
     """Write what each mode rests on, and what the Kalman stage did there."""
     model, gain = result.model, result.stage_gain
+    rated = rate_modes(model, result.stabilisation.orders.size)
     _write_columns(
         group,
         "mode",
+        ("natural_frequency_systematic", rated.frequency_error, "Hz"),
+        ("damping_ratio_systematic", rated.damping_error, "1"),
         ("significance", model.significance, "1"),
         ("misfit", model.residual_ratio, "1"),
         ("stable_orders", model.stable_orders, "1"),

@@ -97,8 +97,12 @@ def without_copies(
 
 
 @contextmanager
-def open_result(path: Path) -> Iterator[h5py.File]:
+def open_result(path: Path, *, verify: bool = True) -> Iterator[h5py.File]:
     """Open a results file through the guards, its content compared with its digest.
+
+    Args:
+        path: of the file.
+        verify: compare it; False for a file that was just written.
 
     Raises:
         CorruptedFile: the content is not what the digest says.
@@ -106,7 +110,8 @@ def open_result(path: Path) -> Iterator[h5py.File]:
         HostileFile: it asks for more than a result would.
     """
     with open_guarded(path) as file, damage_named(path):
-        require_whole(file, path)
+        if verify:
+            require_whole(file, path)
         yield file
 
 
@@ -120,15 +125,19 @@ def is_results(path: Path) -> bool:
         return str(read_attribute(file, "schema")).startswith(_FAMILY)
 
 
-def read_result(path: Path) -> StoredResult:
+def read_result(path: Path, *, verify: bool = True) -> StoredResult:
     """Read a results file of any layout.
+
+    Args:
+        path: of the file.
+        verify: compare its content with its digest; False for one just written.
 
     Raises:
         CorruptedFile: its content is not what its digest says.
         FormatError: it is no results file, of a later layout, or damaged.
         HostileFile: it asks for more than a result would.
     """
-    with open_result(path) as file:
+    with open_result(path, verify=verify) as file:
         schema = read_attribute(file, "schema")
         if schema == PROCESSED_SCHEMA:
             return _processed(file, path)

@@ -37,6 +37,7 @@ from jointbench.station.schemas.positive_quantities import (
     Force,
     Frequency,
     Length,
+    Share,
     Time,
     Torque,
 )
@@ -71,6 +72,8 @@ class PlanSensorTable(StrictTable):
     calibrated: date | None = None
     calibration_months: int = Field(default=12, ge=1, le=120)
     noise: str | None = None
+    certificate: str = Field(default="", max_length=200)
+    sensitivity_sd: Share | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> "PlanSensorTable":
@@ -118,6 +121,8 @@ class PlanSensorTable(StrictTable):
             noise=None
             if self.noise is None
             else parse_value(self.noise, self.quantity),
+            certificate=self.certificate,
+            sensitivity_sd=self.sensitivity_sd,
         )
 
     def _excitation(self) -> float | None:
