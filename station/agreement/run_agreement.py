@@ -9,6 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.structures.agreement.compare_structure import (
     Agreement,
     ComparedPlaces,
@@ -95,7 +96,7 @@ def run_agreement(
         raise UsageError("no session to compare with; name one or several")
     check_outputs([model, identified, *sessions], [outputs.json, outputs.report])
     settings, found = read_toml(model, StructureModel), read_identified(identified)
-    measured = measured_states(sessions, band)
+    measured = measured_states(sessions, band, FrfOptions())
     with working("reducing, comparing"):
         results = {
             label: agreement_of(
