@@ -224,3 +224,28 @@ def joined_states(old: JointStates, new: JointStates) -> JointStates:
         shear=both("shear"),
         frequency=both("frequency"),
     )
+
+
+def joined_data(one: JointData, other: JointData) -> JointData:
+    """Return two sessions of a joint as one, with facts and name of the first.
+
+    Args:
+        one: first session.
+        other: later session; its assemblies are new ones.
+    """
+    first, rows = one.states.torque.size, other.rows
+    later = replace(
+        other.states, assembly=other.states.assembly + one.states.assembly.max() + 1
+    )
+    size = one.rows.value.size
+    covariance = np.zeros((size + rows.value.size,) * 2)
+    covariance[:size, :size] = one.rows.covariance
+    covariance[size:, size:] = rows.covariance
+    both = JointRows(
+        np.concatenate([one.rows.state, rows.state + first]),
+        np.concatenate([one.rows.quantity, rows.quantity]),
+        np.concatenate([one.rows.value, rows.value]),
+        covariance,
+        np.concatenate([one.rows.bound, rows.bound]),
+    )
+    return JointData(one.name, one.facts, joined_states(one.states, later), both)
