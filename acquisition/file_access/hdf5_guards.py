@@ -31,7 +31,8 @@ _NUMBERS = {h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING}
 # Attributes that link dimension scales; they are not read here.
 _SCALE_ATTRIBUTES = {b"DIMENSION_LIST", b"REFERENCE_LIST"}
 _USER_BLOCK = 512  # bytes that MATLAB writes before the signature
-_COMPLEX = (b"real", b"imag")
+_COMPLEX = ((b"real", b"imag"), (b"r", b"i"))
+_PAIR = 2
 _FIELD_NAMES = b"MATLAB_fields"
 
 
@@ -59,6 +60,8 @@ class FileLimits:
         matlab: whether the features of a MAT file of version 7.3 are allowed: 512 bytes
             before the signature, complex numbers as pairs, references to objects of
             the same file, and field names as attributes (which are not read).
+        complex_pairs: whether complex numbers as pairs are allowed, and their type as
+            an object of the file, as netCDF has them.
         in_parts: end of the names of datasets that are unpacked chunk by chunk; of
             these a chunk counts, and all together by `unpacked_ratio`. Empty for none.
     """
@@ -77,6 +80,7 @@ class FileLimits:
     variable_texts: int = 0
     matlab: bool = False
     in_parts: str = ""
+    complex_pairs: bool = False
 
 
 @dataclass(slots=True)
@@ -211,6 +215,9 @@ def _check_entry(group: h5g.GroupID, entry: bytes, name: str, tally: _Tally) -> 
         tally.groups.add(int(info.addr))
     elif info.type == h5o.TYPE_DATASET:
         _check_dataset(opened, name, tally)
+    elif info.type == h5o.TYPE_NAMED_DATATYPE and tally.limits.complex_pairs:
+        if not _is_complex(opened):
+            raise tally.refuse(name, "is a type other than that of complex numbers")
     else:
         raise tally.refuse(name, "is neither a group nor a dataset")
     _check_attributes(opened, name, tally)
@@ -228,8 +235,11 @@ def _check_dataset(dataset: h5d.DatasetID, name: str, tally: _Tally) -> None:
     variable = isinstance(kind, h5t.TypeStringID) and kind.is_variable_str()
     if variable and len(dataset.shape) == 1:
         variable = dataset.shape[0] > tally.limits.variable_texts
-    allowed = kind.get_class() in _NUMBERS or (
-        tally.limits.matlab and (_is_complex(kind) or kind.equal(h5t.STD_REF_OBJ))
+    pairs = tally.limits.matlab or tally.limits.complex_pairs
+    allowed = (
+        kind.get_class() in _NUMBERS
+        or (pairs and _is_complex(kind))
+        or (tally.limits.matlab and kind.equal(h5t.STD_REF_OBJ))
     )
     if not allowed or variable:
         raise tally.refuse(
@@ -241,15 +251,12 @@ def _check_dataset(dataset: h5d.DatasetID, name: str, tally: _Tally) -> None:
 
 
 def _is_complex(kind: h5t.TypeID) -> bool:
-    """Return whether a type is a pair of numbers called "real" and "imag"."""
-    return (
-        isinstance(kind, h5t.TypeCompoundID)
-        and kind.get_nmembers() == len(_COMPLEX)
-        and tuple(map(kind.get_member_name, range(len(_COMPLEX)))) == _COMPLEX
-        and all(
-            kind.get_member_type(i).get_class() == h5t.FLOAT
-            for i in range(len(_COMPLEX))
-        )
+    """Return whether a type is a pair of numbers, real and imaginary part."""
+    if not isinstance(kind, h5t.TypeCompoundID) or kind.get_nmembers() != _PAIR:
+        return False
+    members = range(_PAIR)
+    return tuple(map(kind.get_member_name, members)) in _COMPLEX and all(
+        kind.get_member_type(i).get_class() == h5t.FLOAT for i in members
     )
 
 

@@ -3,13 +3,14 @@
 
 The grammar, one item a column, joined by commas::
 
-    role[.label][@point]:unit[@sensitivity][!code]
+    role[.label][@point]:[-]unit[@sensitivity][!code]
 
     time:s,force:N,acceleration:m/s^2
     time:ms,force:V@2.248mV/N,acceleration.a1@3:V@10mV/g,acceleration.a2@4:V@10mV/g
     x:mm,y:mm,z:um!-25400       heights where -25400 means "no point here"
     time:s,-,force:N            a column that is not wanted
     z:um@0.5um                  heights alone, 0.5 um apart
+    force:-N                    numbers that count the other way round
 """
 
 import re
@@ -57,6 +58,7 @@ class Column:
         sensitivity: [V per SI unit] where the unit is a voltage, else None.
         code: code of a missing value [unit], or None.
         spacing: distance of neighbouring heights [m], of a column z without x, or None.
+        sign: -1.0 where the numbers count the other way round, else 1.0.
     """
 
     role: str
@@ -66,6 +68,7 @@ class Column:
     sensitivity: float | None = None
     code: float | None = None
     spacing: float | None = None
+    sign: float = 1.0
 
     @property
     def factor(self) -> float:
@@ -73,8 +76,8 @@ class Column:
         if self.role == SKIP:
             return 1.0
         if self.sensitivity is not None:
-            return to_si(self.unit, "voltage") / self.sensitivity
-        return to_si(self.unit, _KINDS[self.role])
+            return self.sign * to_si(self.unit, "voltage") / self.sensitivity
+        return self.sign * to_si(self.unit, _KINDS[self.role])
 
 
 def parse_columns(spec: str) -> tuple[Column, ...]:
@@ -123,18 +126,20 @@ def _parse_item(item: str) -> Column:
             f"column {item!r} has no unit; write for example "
             f"{item.rstrip(':')}:{example_unit(_KINDS[role])}"
         )
+    unit = match["unit"].strip()
+    reversed_ = unit.startswith("-") and role in tuple(Quantity)
+    unit = unit[1:].strip() if reversed_ else unit
     return Column(
         role=role,
-        unit=match["unit"].strip(),
+        unit=unit,
         label=(match["label"] or "").strip(),
         point=(match["point"] or "").strip(),
         sensitivity=None
         if role == "z"
-        else _sensitivity(item, role, match["unit"], match["sensitivity"]),
+        else _sensitivity(item, role, unit, match["sensitivity"]),
         code=_code(item, match["code"]),
-        spacing=_spacing(item, match["unit"], match["sensitivity"])
-        if role == "z"
-        else None,
+        spacing=_spacing(item, unit, match["sensitivity"]) if role == "z" else None,
+        sign=-1.0 if reversed_ else 1.0,
     )
 
 

@@ -65,11 +65,14 @@ def _kinds(unit: str) -> list[str]:
     return [kind for kind in _KINDS if unit and is_unit(unit, kind)]
 
 
-def hit_columns_stated(table: Table) -> tuple[Column, ...] | None:
+def hit_columns_stated(
+    table: Table, *, timed: bool = True
+) -> tuple[Column, ...] | None:
     """Return the columns of a table of hits, from its header.
 
     Args:
         table: as read.
+        timed: whether a column of times is needed.
 
     Returns:
         One time and at least one quantity, each column's unit a unit of one of them;
@@ -84,7 +87,7 @@ def hit_columns_stated(table: Table) -> tuple[Column, ...] | None:
         columns.append(Column(kinds[0], unit, "" if kinds == ["time"] else name))
     roles = [column.role for column in columns]
     labels = [column.label for column in columns if column.role != "time"]
-    if roles.count("time") != 1 or not labels:
+    if (roles.count("time") != 1 and (timed or "time" in roles)) or not labels:
         return None
     if len(set(labels)) != len(labels) or "" in labels:
         columns = [Column(column.role, column.unit) for column in columns]
@@ -108,3 +111,14 @@ def units_words(table: Table) -> str:
             what = f"the unit {shown(unit)} is not known" if unit else "states no unit"
             return f"{words}, but of column {number} ({shown(name)}) {what}"
     return f"{words}; that is not one time and what was measured over it"
+
+
+def header_names(table: Table) -> tuple[str, ...]:
+    """Return the cells of the last header line, one a column; empty where they differ.
+
+    Args:
+        table: as read, with the lines above its numbers.
+    """
+    lines = [line for line in table.header if line.strip()]
+    cells = _cells(lines[-1], table) if lines else []
+    return tuple(cells) if len(cells) == table.values.shape[0] else ()

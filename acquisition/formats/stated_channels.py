@@ -94,6 +94,29 @@ def recording_of(
     stated = tuple(stated)
     _require_sane(path, stated, sample_rate)
     wanted = _as_stated(path, stated) if columns is None else _named(stated, columns)
+    return recording_of_columns(
+        path,
+        wanted,
+        sample_rate=sample_rate,
+        columns=columns,
+        point=point,
+        layout=layout,
+        name=name,
+    )
+
+
+def recording_of_columns(
+    path: Path,
+    wanted: Sequence[tuple[StatedChannel, Column]],
+    *,
+    sample_rate: float,
+    columns: str | None,
+    point: str,
+    layout: str,
+    name: str | None = None,
+) -> Recording:
+    """Return channels with their columns as a recording; see `recording_of`."""
+    _require_sane(path, [channel for channel, _ in wanted], sample_rate)
     _require_even(path, [channel for channel, _ in wanted])
     samples = np.empty((len(wanted), wanted[0][0].size))
     for row, (channel, column) in zip(samples, wanted, strict=True):
@@ -153,14 +176,14 @@ def _as_stated(
     """
     found = []
     for channel in stated:
-        quantity = channel.quantity or _quantity_of(channel.unit)
+        quantity = channel.quantity or quantity_of_unit(channel.unit)
         if quantity is None or not is_unit(channel.unit, quantity.value):
             raise UnitError(_what_to_type(path, stated, channel))
         found.append((channel, Column(quantity.value, channel.unit)))
     return found
 
 
-def _quantity_of(unit: str) -> Quantity | None:
+def quantity_of_unit(unit: str) -> Quantity | None:
     """Return the single quantity of a unit."""
     found = [quantity for quantity in Quantity if is_unit(unit, quantity.value)]
     return found[0] if len(found) == 1 else None

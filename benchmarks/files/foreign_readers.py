@@ -5,8 +5,9 @@ from pathlib import Path
 
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.formats.samples.hit_tables import read_recording
-from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
+from jointbench.acquisition.formats.samples.mat_recording import read_mat_recordings
 from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.formats.samples.tdms import read_tdms
 from jointbench.acquisition.formats.samples.universal import read_universal
 from jointbench.acquisition.formats.samples.wave import read_wave
@@ -47,7 +48,7 @@ READERS: dict[str, Callable[[Path], object]] = {
     "results": read_result,
     "campaign": read_campaign,
     "Rattlesnake": lambda p: read_rattlesnake(p, columns=None, point="1"),
-    "MAT": lambda p: read_mat_recording(p, columns=MAT, point="1"),
+    "MAT": lambda p: read_mat_recordings(p, SampleOptions(MAT)),
     "universal": lambda p: read_universal(p, columns=None, point="1"),
     "TDMS": lambda p: read_tdms(p, columns=None, point="1"),
     "WAV": lambda p: read_wave(p, columns="force:N", point="1", full_scale=1.0),

@@ -31,8 +31,9 @@ from scipy.io import wavfile
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.formats.samples.hit_tables import read_recording
-from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
+from jointbench.acquisition.formats.samples.mat_recording import read_mat_recordings
 from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.formats.samples.tdms import read_tdms
 from jointbench.acquisition.formats.samples.universal import read_universal
 from jointbench.acquisition.formats.samples.wave import read_wave
@@ -59,7 +60,7 @@ READERS: dict[str, tuple[str, Reader]] = {
     "results": ("r.results.h5", read_result),
     "universal": ("u.uff", lambda p: read_universal(p, columns=None, point="1")),
     "TDMS": ("t.tdms", lambda p: read_tdms(p, columns=None, point="1")),
-    "MAT": ("m.mat", lambda p: read_mat_recording(p, columns=MAT, point="1")),
+    "MAT": ("m.mat", lambda p: read_mat_recordings(p, SampleOptions(MAT))),
     "WAV": ("w.wav", lambda p: read_wave(p, columns=WAVE, point="1", full_scale=9)),
     "Rattlesnake": ("n.nc4", lambda p: read_rattlesnake(p, columns=None, point="1")),
     "hits as CSV": ("c.csv", lambda p: read_recording(p, columns=TABLE)),
@@ -208,10 +209,12 @@ def start() -> tuple[multiprocessing.Process, Connection]:
     return child, ours  # type: ignore[return-value]
 
 
-def fuzz(files: int, seed: int, folder: Path) -> tuple[Counter, list[str], float]:
+def fuzz(
+    files: int, seed: int, folder: Path, make: Callable[[Path], None] = sound_files
+) -> tuple[Counter, list[str], float]:
     """Read mutated files; return what became of them, and what must not be."""
     draw = random.Random(seed)
-    sound_files(folder)
+    make(folder)
     sound = {name: (folder / file).read_bytes() for name, (file, _) in READERS.items()}
     found: Counter = Counter()
     wrong: list[str] = []

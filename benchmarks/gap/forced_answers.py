@@ -101,9 +101,8 @@ def shortened(campaign: Campaign) -> Campaign:
 
 def whole(made: SimulatedCampaign, campaign: Campaign) -> dict[str, Any]:
     """Return the margin of an effect, and what the whole engine says of it."""
-    margin = expected_margin(
-        margin_scale(made.design, samples=SAMPLES), made.effects[0]
-    )
+    scale = margin_scale(made.design, samples=SAMPLES, shared=True)
+    margin = expected_margin(scale, made.effects[0])
     start = time.process_time()
     found = diagnosis_json(diagnose(campaign))
     kept = ("verdict", "effects", "reason", "mostly")

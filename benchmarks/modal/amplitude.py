@@ -54,6 +54,18 @@ def _nearest(chain: ModalChain, frequency: float) -> AmplitudeMode | None:
     return min(near, key=lambda m: abs(m.soft.frequency - frequency), default=None)
 
 
+def _exponent(case: Case, mode: AmplitudeMode) -> Row:
+    """Return the exponent of micro-slip as found, with its sd, and the joint's own."""
+    joint = case.structure.joint
+    slip = np.log(joint.slider_force / joint.slider_stiffness)
+    true = float(np.polyfit(slip, np.log(joint.slider_stiffness), 1)[0])
+    found = [law for law in mode.laws if law.name == "micro-slip power law"]
+    if not found:
+        return {}
+    value, sd = found[0].exponent, found[0].exponent_sd
+    return {"exponent_true": true, "exponent": value, "exponent_sd": sd}
+
+
 def _modes_near(chain: ModalChain, frequency: float) -> int:
     found = chain.result.model.natural_frequency
     return int(np.sum(np.abs(found / frequency - 1) < _NEAR))
@@ -207,6 +219,7 @@ def families(seed: int) -> Row:
         "span": span,
         "outcome": mode.dependence.value,
         "right": mode.family.startswith(FAMILY[law]),
+        **(_exponent(case, mode) if law == "micro-slip" else {}),
         "ratio": None if np.isnan(mode.ratio) else mode.ratio,
     }
 

@@ -58,6 +58,10 @@ def _share(rows: Sequence[Row], good: Sequence[bool]) -> str:
     return wilson(int(np.sum(good)), len(rows))
 
 
+def _count(good: Sequence[bool]) -> str:
+    return wilson(int(np.sum(good)), len(good))
+
+
 def _curves(rows: Sequence[Row]) -> str:
     run = [100 * row["softening"] for row in rows if "softening" in row] or [0.0]
     lines = [
@@ -203,6 +207,12 @@ def _families(rows: Sequence[Row]) -> str:
         "a slider ranked first means friction was added after two Jenkins draws of "
         "other seeds had gone to quadratic damping."
     )
+    held = [
+        abs(row["exponent"] - row["exponent_true"]) < 1.96 * row["exponent_sd"]
+        for row in rows
+        if "exponent_true" in row
+    ]
+    lines.append(f"\n95 % intervals of the exponent of micro-slip hold {_count(held)}.")
     return "\n".join(lines) + "\n"
 
 

@@ -193,7 +193,7 @@ def _judged(
         shown = None
     depends = outcome is Dependence.DEPENDS and shown is not None
     family, ratio = family_of(change) if depends and change else ("", float("nan"))
-    laws = fit_laws(curve, change) if depends else ()
+    laws = fit_laws(curve, change, decays.derivatives) if depends else ()
     soft = _linear_limit(model, members)
     if shown is not None and (depends or len(members) > 1):
         soft = SoftLimit(

@@ -36,10 +36,18 @@ def time_scale_words(recordings: Sequence[Recording]) -> tuple[str, ...]:
     recording, duration = strange[0]
     unit, other = ("s", "ms") if duration > LONGEST_PULSE else ("ms", "s")
     more = f" (and {len(strange) - 1} more)" if len(strange) > 1 else ""
-    return (
+    words = (
         f"recording {recording.name!r}{more}: the force pulse lasts "
         f"{1e3 * duration:.3g} ms at half its height, a hammer's lasts "
-        f"{1e3 * SHORTEST_PULSE:g} to {1e3 * LONGEST_PULSE:g} ms; is its time in "
+        f"{1e3 * SHORTEST_PULSE:g} to {1e3 * LONGEST_PULSE:g} ms; "
+    )
+    if any("rate_stated" in dict(done.detail) for done in recording.provenance):
+        return (
+            f"{words}is the rate right? It was given as {recording.sample_rate:.6g} "
+            "Hz: import it again with another --rate",
+        )
+    return (
+        f"{words}is its time in "
         f"{other}, not {unit}? At {recording.sample_rate:.6g} Hz sample rate all "
         f"frequencies are off by as much; import it again with 'time:{other}'",
     )

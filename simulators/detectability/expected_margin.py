@@ -83,19 +83,23 @@ class MarginScale:
     rivals: Mapping[str, Rival] = field(repr=False)
 
 
-def margin_scale(design: CampaignDesign, *, samples: int | None = None) -> MarginScale:
+def margin_scale(
+    design: CampaignDesign, *, samples: int | None = None, shared: bool = False
+) -> MarginScale:
     """Prepare a design for `expected_margin`.
 
     Args:
         design: the campaign without effects.
         samples: of a record that count, from its start; None for all.
+        shared: whether delay and low pass of all channels together are rivals as well,
+            as for a hidden effect that acts on all channels.
 
     Returns:
         Base responses, weights, slopes and rivals.
     """
     view, scales = base_view(design, samples=samples), specimen_scales(design)
     families: dict[str, list[HiddenEffect]] = {}
-    for rival in rival_effects(scales):
+    for rival in rival_effects(scales, shared=shared):
         families.setdefault(_site(rival), []).append(rival)
     rivals = {site: _rival(view, shapes) for site, shapes in families.items()}
     return MarginScale(scales, view, rivals)

@@ -9,6 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.hidden.effect_draws import Scales
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
+from jointbench.simulators.hidden.sensor_faults import ALL_CHANNELS
 
 # Small enough to change the responses in proportion, large enough for differences.
 _SMALL = 1e-5
@@ -46,11 +47,12 @@ _SIGNED = frozenset(
 )
 
 
-def rival_effects(scales: Scales) -> list[HiddenEffect]:
+def rival_effects(scales: Scales, *, shared: bool = False) -> list[HiddenEffect]:
     """Return small effects whose responses span those of each rival.
 
     Args:
         scales: of the specimen.
+        shared: whether delay and low pass of all channels together are rivals as well.
 
     Returns:
         Effects; those of one name and site differ in shape only.
@@ -62,6 +64,7 @@ def rival_effects(scales: Scales) -> list[HiddenEffect]:
         *_masses(scales),
         *_by_record(),
         *_sensors(),
+        *(_shared_faults() if shared else []),
     ]
 
 
@@ -197,4 +200,12 @@ def _sensors() -> list[HiddenEffect]:
                 ("sensor_lowpass", "fc", 800 / _SMALL),
             )
         ),
+    ]
+
+
+def _shared_faults() -> list[HiddenEffect]:
+    """Return faults of all channels; a gain of all is that of the force."""
+    return [
+        HiddenEffect("delay", {"tau": 2e-4 * _SMALL, "dof": ALL_CHANNELS}),
+        HiddenEffect("sensor_lowpass", {"fc": 800 / _SMALL, "dof": ALL_CHANNELS}),
     ]

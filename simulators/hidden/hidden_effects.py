@@ -10,7 +10,11 @@ import numpy as np
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.hidden.campaign_design import CampaignCondition
 from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE, SAMPLES
-from jointbench.simulators.hidden.sensor_faults import SENSOR_FAULTS, Parameters
+from jointbench.simulators.hidden.sensor_faults import (
+    ALL_CHANNELS,
+    SENSOR_FAULTS,
+    Parameters,
+)
 from jointbench.simulators.mechanics.joint_laws import JointLaw, LawKind
 from jointbench.simulators.mechanics.plant import GROUND, Plant, PlantLink
 from jointbench.simulators.mechanics.sliders import iwan_bank, jenkins_bank
@@ -26,7 +30,8 @@ class HiddenEffect:
 
     Attributes:
         name: as in the catalogue of campaigns.
-        parameters: by name, SI units; `dof` is its body or channel.
+        parameters: by name, SI units; `dof` is its body or channel, `ALL_CHANNELS`
+            for a fault that all channels share.
     """
 
     name: str
@@ -45,7 +50,8 @@ class HiddenEffect:
     @property
     def site(self) -> str:
         """Site of the effect: a link, a body or a channel."""
-        if self.name in {"saturation", "clock_drift"}:
+        shared = self.parameters.get("dof") == ALL_CHANNELS
+        if shared or self.name in {"saturation", "clock_drift"}:
             return "channel:all"
         dof = int(self.parameters.get("dof", 0))
         if self.name in SENSOR_FAULTS:

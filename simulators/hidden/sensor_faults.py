@@ -14,6 +14,8 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.simulators.hidden.campaign_design import CampaignCondition
 
 Parameters = Mapping[str, float]
+ALL_CHANNELS = -1.0
+"""The `dof` of a fault that all channels share."""
 _Fault = Callable[[FloatArray, Parameters, float, CampaignCondition], FloatArray]
 
 
@@ -36,11 +38,18 @@ def distort_signals(
         Output of the sensors [m/s^2], shape (2, n).
     """
     for name, parameters in effects:
-        if name in ANALOGUE_FAULTS:
-            acceleration = ANALOGUE_FAULTS[name](
-                acceleration, parameters, rate, condition
-            )
+        if name not in ANALOGUE_FAULTS:
+            continue
+        for own in _each_channel(parameters, len(acceleration)):
+            acceleration = ANALOGUE_FAULTS[name](acceleration, own, rate, condition)
     return acceleration
+
+
+def _each_channel(parameters: Parameters, channels: int) -> list[Parameters]:
+    """Return the parameters of a fault for each channel that has it."""
+    if parameters.get("dof") != ALL_CHANNELS:
+        return [parameters]
+    return [{**parameters, "dof": float(dof)} for dof in range(channels)]
 
 
 def clip_samples(

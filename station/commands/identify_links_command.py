@@ -5,16 +5,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.identified import (
     Identification,
     identification_json,
 )
 from jointbench.signal.modal.modes import ModalSettings
-from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.model_kind import describes_structure
-from jointbench.station.pipeline.chain import ChainSettings, run_chain
+from jointbench.station.joints.modes_of_files import modes_of_files
+from jointbench.station.pipeline.chain import ChainSettings
 from jointbench.station.pipeline.link_stage import fits, identify_joint
 from jointbench.station.pipeline.modal_options import parse_band
 from jointbench.station.schemas.bench_model import BenchModel
@@ -27,16 +28,24 @@ def run_identify(
     sessions: Sequence[Path],
     *,
     band: str | None = None,
+    options: FrfOptions | None = None,
     json_target: str | None,
 ) -> Identification:
-    """Identify the links of `model` from the modes of `sessions` and show them."""
+    """Identify the links of `model` from measured modes and show them.
+
+    Args:
+        model: lumped bench as TOML.
+        sessions: sessions, files of hits, or files of FRFs.
+        band: of the modes, as typed.
+        options: what the user states about files that are no sessions.
+        json_target: where the JSON goes.
+    """
     check_outputs([model, *sessions], [json_target])
     settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
     bench = read_toml(model, BenchModel)
-    recordings = read_recordings(sessions, columns=None, point="1")
     with working("fitting modes, identifying links"):
-        modes = run_chain(recordings, settings).result.model
-        result = identify_joint(bench, modes)
+        modes = modes_of_files(sessions, options or FrfOptions(), settings)
+        result = identify_joint(bench, modes.result.model)
     show_joint(result, json_target)
     write_json(json_target, identification_json(result))
     return result
@@ -51,6 +60,7 @@ def identify_any(
     report: Path | None,
     json_target: str | None,
     surfaces: Sequence[Path] = (),
+    options: FrfOptions | None = None,
 ) -> bool:
     """Identify the joints of a lumped bench or of a meshed structure.
 
@@ -73,18 +83,23 @@ def identify_any(
             report=report,
             json_target=json_target,
             surfaces=surfaces,
+            options=options,
         )
     if not sessions:
         raise UsageError(
-            f"'{model}' is a lumped bench and needs measured sessions; add them, "
-            f"'jointbench identify {model} SESSION'"
+            f"'{model}' is a lumped bench and needs a measurement; add sessions or "
+            f"files of FRFs, 'jointbench identify {model} SESSION'"
         )
     if report is not None or surfaces:
         raise UsageError(
             "--report and --surface apply to structures with [joints]; for a lumped "
             "bench use 'jointbench report SESSION --model MODEL --out PATH'"
         )
-    return fits(run_identify(model, sessions, band=band, json_target=json_target))
+    return fits(
+        run_identify(
+            model, sessions, band=band, options=options, json_target=json_target
+        )
+    )
 
 
 def show_joint(result: Identification, json_target: str | None) -> None:

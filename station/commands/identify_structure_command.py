@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.identified import IdentificationVerdict
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
@@ -30,6 +31,7 @@ def run_identify_structure(
     report: Path | None,
     json_target: str | None,
     surfaces: Sequence[Path] = (),
+    options: FrfOptions | None = None,
 ) -> bool:
     """Identify the joints of a structure, show and write them.
 
@@ -40,7 +42,12 @@ def run_identify_structure(
     """
     check_outputs([model, *sessions, *surfaces], [json_target, report])
     done = identified_structure(
-        model, sessions, band=band, cache=cache, surfaces=surfaces
+        model,
+        sessions,
+        band=band,
+        cache=cache,
+        surfaces=surfaces,
+        options=options,
     )
     result, rows = done.result, done.theory
     show_structure(result, json_target)

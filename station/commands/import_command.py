@@ -2,54 +2,57 @@
 """``jointbench import``: foreign files into one session file."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.formats.heights.height_facts import cautions
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Channel, Recording
 from jointbench.acquisition.records.session import JointSetup, Session, new_session
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.store import write_session
-from jointbench.signal.hits.pulse_duration import time_scale_words
+from jointbench.signal.hits.plausibility import plausibility_words
 from jointbench.station.files.input_files import parse_preload, read_foreign
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.pipeline.roughness_words import caution_lines
 from jointbench.station.screen.terminal import console, table, working, write_json
 
 
-def run_import(
-    files: Sequence[Path],
-    out: Path,
-    *,
-    columns: str | None,
-    point: str,
-    preload: str | None = None,
-    full_scale: float | None = None,
-    overwrite: bool,
-    json_target: str | None,
-) -> Session:
+@dataclass(frozen=True, slots=True)
+class ImportRequest:
+    """What is asked of an import.
+
+    Attributes:
+        options: what the user says about the files.
+        preload: on the joint during the recording, with unit; None if not given.
+        overwrite: replace an existing session.
+        json_target: where the JSON goes, or None.
+    """
+
+    options: SampleOptions = field(default_factory=SampleOptions)
+    preload: str | None = None
+    overwrite: bool = False
+    json_target: str | None = None
+
+
+def run_import(files: Sequence[Path], out: Path, request: ImportRequest) -> Session:
     """Import `files` into the session file `out` and list the records.
 
     Args:
         files: hits and surfaces.
         out: session file.
-        columns: roles and units of the columns of plain tables.
-        point: hit point.
-        preload: on the joint during the recording, with unit.
-        full_scale: value of the largest number of a WAV file, in the unit of
-            `columns`.
-        overwrite: replace an existing session.
-        json_target: where the JSON goes.
+        request: what is asked.
 
     Raises:
         UsageError: the session exists, is being recorded, or the existing file is not
             a session.
         BadData: a file cannot be read; then nothing is written.
     """
+    preload, json_target = request.preload, request.json_target
     check_outputs([*files, out], [json_target])
-    if out.exists() and overwrite:
+    if out.exists() and request.overwrite:
         require_replaceable(out)
     else:
         check_outputs(files, [] if out.exists() else [out])
@@ -60,9 +63,7 @@ def run_import(
     surfaces: list[Surface] = []
     for path in files:
         with working(f"reading {path.name}"):
-            records = read_foreign(
-                path, columns=columns, point=point, full_scale=full_scale
-            )
+            records = read_foreign(path, request.options)
         for record in records:
             if isinstance(record, Recording):
                 name = _free(record.name, [r.name for r in recordings])
@@ -77,8 +78,8 @@ def run_import(
         surfaces=surfaces,
         joint=joint,
     )
-    write_session(session, out, overwrite=overwrite)
-    _show(session, out, time_scale_words(recordings), json_target)
+    write_session(session, out, overwrite=request.overwrite)
+    _show(session, out, plausibility_words(recordings), json_target)
     return session
 
 

@@ -6,9 +6,16 @@ from typing import Annotated
 
 import typer
 
-from jointbench.station.commands.shared_options.input_options import Preload, Sessions
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.station.commands.shared_options.input_options import (
+    Averages,
+    Columns,
+    Preload,
+    Sessions,
+)
 from jointbench.station.commands.shared_options.joint_options import (
     Cache,
+    ChainSurfaces,
     ContactSurfaces,
     GapSources,
     Model,
@@ -33,6 +40,8 @@ def identify_command(
     ],
     sessions: Sessions = None,
     band: Band = None,
+    columns: Columns = None,
+    averages: Averages = None,
     cache: Cache = None,
     surface: ContactSurfaces = None,
     report: HtmlReport = None,
@@ -42,13 +51,16 @@ def identify_command(
     """Identify stiffness and damping of joints from modes.
 
     Stiffness [N/m] and damping [N s/m] have standard deviations. A parameter that
-    the measurement does not determine is reported with the reason.
+    the measurement does not determine is reported with the reason. FRFs are fitted
+    first; a file of FRFs is one state of the joints.
 
     Examples:
         jointbench identify bench.toml session.h5 --json joint.json
+        jointbench identify bench.toml frf.uff --averages 5
         jointbench identify plates.toml session.h5 --surface surface-a.csv
         --surface surface-b.csv --report joints.html
     """
+    from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
     from jointbench.station.commands.identify_links_command import identify_any
 
     fits = identify_any(
@@ -59,6 +71,7 @@ def identify_command(
         report=report,
         json_target=json,
         surfaces=surface or [],
+        options=FrfOptions(columns, averages=averages or 0),
     )
     return 0 if fits else EXIT_QUALITY
 
@@ -166,6 +179,7 @@ def gap_command(
             "with those that the explanations predict; 1 to 2 s more.",
         ),
     ] = False,
+    surface: ChainSurfaces = None,
     report: HtmlReport = None,
     json: Json = None,
     debug: Debug = False,
@@ -179,9 +193,24 @@ def gap_command(
     Examples:
         jointbench gap session.h5 --model bench.toml --report gap.html
         jointbench gap hits.h5 --model sheet.json
+        jointbench gap session.h5 --model bench.toml --surface a.csv --surface b.csv
         jointbench gap surface.csv --report surface.html
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
+    if surface:
+        _refuse_with_surface(with_, effects, curves)
+        from jointbench.station.chain.run_chain import run_chain
+
+        run_chain(
+            sources,
+            surface,
+            model=model,
+            preload=preload,
+            without=without,
+            report=report,
+            json_target=json,
+        )
+        return
     from jointbench.station.commands.gap_command import run_gap
     from jointbench.station.gap.gap_options import names_in
 
@@ -195,6 +224,16 @@ def gap_command(
         report=report,
         json_target=json,
     )
+
+
+def _refuse_with_surface(
+    with_: str | None, effects: list[Path] | None, curves: bool
+) -> None:
+    if with_ or effects or curves:
+        raise UsageError(
+            "--with, --effects and --curves do not apply to a chain; leave them or "
+            "--surface out"
+        )
 
 
 def next_command(

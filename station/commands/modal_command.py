@@ -8,6 +8,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.formats.frfs.frf_columns import TABLE_EXAMPLE
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.input_files import is_session_name, read_recordings
@@ -75,8 +76,7 @@ def run_modal(
     files: Sequence[Path],
     settings: ChainSettings | None = None,
     *,
-    columns: str | None = None,
-    point: str = "1",
+    samples: SampleOptions | None = None,
     out: Path | None = None,
     universal: Path | None = None,
     json_target: str | None = None,
@@ -90,8 +90,7 @@ def run_modal(
     Args:
         files: sessions, or files of hits.
         settings: None for the defaults.
-        columns: of files of hits.
-        point: hit point, for files that do not name one.
+        samples: what the user says about files of hits.
         out: results file; None for next to the session.
         universal: universal file to write, or None.
         json_target: where the JSON goes.
@@ -103,7 +102,7 @@ def run_modal(
     settings, run = settings or ChainSettings(), run or StageRun()
     target = out or _next_to_session(files)
     check_outputs(files, [target, universal, json_target])
-    stored = _recordings(files, columns, point)
+    stored = _recordings(files, samples or SampleOptions())
     # Levels of hits are judged over the whole campaign, across preloads.
     groups = by_preload(judge_hits(stored, settings, run))
     chains, contents = [], []
@@ -123,14 +122,14 @@ def run_modal(
     return chains[0]
 
 
-def _recordings(
-    files: Sequence[Path], columns: str | None, point: str
-) -> tuple[Recording, ...]:
+def _recordings(files: Sequence[Path], given: SampleOptions) -> tuple[Recording, ...]:
     """Read recordings; where units are missing, the message names FRFs as well."""
     try:
-        return read_recordings(files, columns=columns, point=point)
+        return read_recordings(
+            files, columns=given.columns, point=given.point, rate=given.rate
+        )
     except UnitError as error:
-        if columns is not None:
+        if given.columns is not None:
             raise
         raise UnitError(f"{error}; for FRFs --columns '{TABLE_EXAMPLE}'") from error
 

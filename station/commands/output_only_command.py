@@ -26,6 +26,7 @@ def run_output_only(
     order: int | None,
     json_target: str | None,
     keep_sines: bool = False,
+    rate: float | None = None,
 ) -> OutputOnlyModes:
     """Identify modes from the responses in `files` and show them.
 
@@ -36,9 +37,12 @@ def run_output_only(
         order: states of the largest model, or None for the default.
         json_target: where the JSON goes.
         keep_sines: leave steady sines in the record.
+        rate: of a file without times [Hz], or None.
     """
     check_outputs(files, [json_target])
-    recording = only_recording(read_recordings(files, columns=columns, point=""))
+    recording = only_recording(
+        read_recordings(files, columns=columns, point="", rate=rate)
+    )
     settings = OutputOnlySettings(band=band, take_out_sines=not keep_sines)
     if order is not None:
         settings = replace(settings, highest_order=order)

@@ -21,10 +21,14 @@ from jointbench.station.commands.shared_options.input_options import (
     Columns,
     Files,
     FullScale,
+    Guess,
     HitFiles,
+    Picture,
     Point,
     Preload,
+    Rate,
     SurfaceFiles,
+    Yes,
 )
 from jointbench.station.commands.shared_options.joint_options import Model
 from jointbench.station.commands.shared_options.mode_fit_options import (
@@ -59,40 +63,55 @@ def import_command(
     out: SessionOut,
     columns: Columns = None,
     point: Point = "1",
+    rate: Rate = None,
     preload: Preload = None,
     full_scale: FullScale = None,
+    guess: Guess = False,
+    yes: Yes = False,
+    picture: Picture = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
     """Import hits and surfaces from foreign files into a session.
 
-    Plain tables (.csv, .txt, .npy) need --columns. A file without units is refused.
+    Plain tables (.csv, .txt, .npy) need --columns, samples without times --rate. A
+    file without units is refused. --guess proposes columns, units and rate, shows
+    the first hit, and writes only with --yes or on confirmation.
 
     Examples:
         jointbench import hit1.npy hit2.npy --out session.h5 --columns
         'time:s,force:N,acceleration:m/s^2'
+        jointbench import hits.csv --out session.h5 --guess --picture hits.html
         jointbench import trace.txt --out session.h5 --columns 'x:um,z:um'
         --preload '4 kN'
     """
-    from jointbench.station.commands.import_command import run_import
+    from jointbench.acquisition.formats.samples.sample_format import SampleOptions
+    from jointbench.station.commands.import_command import ImportRequest, run_import
+    from jointbench.station.files.input_files import parse_rate
 
-    run_import(
-        files,
-        out,
-        columns=columns,
-        point=point,
-        preload=preload,
-        full_scale=full_scale,
-        overwrite=force,
-        json_target=json,
-    )
+    options = SampleOptions(columns, point, full_scale, parse_rate(rate))
+    if guess:
+        from jointbench.station.guess.run_guess import GuessRequest, run_guess
+
+        asked = GuessRequest(yes=yes, picture=picture)
+        confirmed = run_guess(files, out, options, asked, json)
+        if confirmed is None:
+            return
+        options = confirmed
+    elif yes or picture is not None:
+        from jointbench.acquisition.basics.errors import UsageError
+
+        raise UsageError("--yes and --picture belong to --guess; add it")
+    request = ImportRequest(options, preload, overwrite=force, json_target=json)
+    run_import(files, out, request)
 
 
 def modal_command(
     files: HitFiles,
     columns: Columns = None,
     point: Point = "1",
+    rate: Rate = None,
     band: Band = None,
     order: Order = None,
     estimator: EstimatorName = "H1",
@@ -118,6 +137,8 @@ def modal_command(
         jointbench modal frf.txt --columns 'frequency:Hz,real:m/N,imaginary:m/N'
         jointbench modal spindle.h5 --output-only --band 30:500 --keep-sines
     """
+    from jointbench.station.files.input_files import parse_rate
+
     if output_only:
         from jointbench.station.commands.output_only_command import run_output_only
         from jointbench.station.pipeline.modal_options import parse_band
@@ -125,6 +146,7 @@ def modal_command(
         run_output_only(
             files,
             columns=columns,
+            rate=parse_rate(rate),
             band=parse_band(band),
             order=order,
             keep_sines=keep_sines,
@@ -139,6 +161,7 @@ def modal_command(
             "leave it out"
         )
     from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+    from jointbench.acquisition.formats.samples.sample_format import SampleOptions
     from jointbench.station.commands.modal_command import run_frfs, run_modal
     from jointbench.station.pipeline.modal_options import modal_settings
 
@@ -149,8 +172,7 @@ def modal_command(
     run_modal(
         files,
         settings,
-        columns=columns,
-        point=point,
+        samples=SampleOptions(columns, point, rate=parse_rate(rate)),
         out=out,
         universal=uff,
         json_target=json,

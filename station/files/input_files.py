@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Input files of a command: sessions, hit tables and surfaces, by content."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.file_access.text_files import file_digest
-from jointbench.acquisition.formats.columns import SURFACE_EXAMPLES, parse_columns
+from jointbench.acquisition.formats.column_roles import (
+    QUANTITY_NAMES,
+    roles_named,
+)
+from jointbench.acquisition.formats.columns import (
+    SURFACE_EXAMPLES,
+)
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.formats.samples.hit_tables import read_recording
 from jointbench.acquisition.formats.samples.read_samples import read_samples
@@ -38,17 +45,33 @@ def is_session_name(path: Path) -> bool:
     return path.suffix.lower() in SESSION_SUFFIXES
 
 
-def read_foreign(
-    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
-) -> tuple[Recording | Surface, ...]:
+def parse_rate(text: str | float | None) -> float | None:
+    """Read a sample rate as typed, for example ``"25.6 kHz"``; in hertz.
+
+    Args:
+        text: with a unit; a number is in hertz; None for none.
+
+    Raises:
+        UnitError: it has no unit of frequency.
+        UsageError: it is not above zero.
+    """
+    if text is None:
+        return None
+    if not isinstance(text, str | int | float):
+        raise UsageError(f"the rate is {text!r}; give it in Hz, or as '25.6 kHz'")
+    value = parse_value(text, "frequency") if isinstance(text, str) else float(text)
+    if not 0.0 < value < math.inf:
+        raise UsageError(f"--rate is {text!r}; it must be above zero, e.g. '25.6 kHz'")
+    return value
+
+
+def read_foreign(path: Path, options: SampleOptions) -> tuple[Recording | Surface, ...]:
     """Read one foreign file as hits or as a surface.
 
     Args:
         path: of the file.
-        columns: what the columns of a plain table hold; a ``time`` makes it hits.
-            Formats that state their units do without.
-        point: where the hammer struck.
-        full_scale: what the largest number of a WAV file stands for.
+        options: what the user says about it; a measured column makes a plain table
+            hits. Formats that state their units do without columns.
 
     Returns:
         A recording or a surface, named after the file; one for each stream where it
@@ -58,11 +81,12 @@ def read_foreign(
         BadData: the file is neither, or its units are missing; the message names what
             to type.
     """
-    samples = read_samples(path, SampleOptions(columns, point, full_scale))
+    samples = read_samples(path, options)
     if samples:
         return samples
-    if columns is not None and "time" in {c.role for c in parse_columns(columns)}:
-        return (read_recording(path, columns=columns, point=point),)
+    columns, point, rate = options.columns, options.point, options.rate
+    if rate is not None or roles_named(columns) & {"time", *QUANTITY_NAMES}:
+        return (read_recording(path, columns=columns, point=point, rate=rate),)
     try:
         return (read_surface(path, columns=columns),)
     except UnitError as surface_error:
@@ -78,9 +102,19 @@ def read_foreign(
 
 
 def read_recordings(
-    files: Sequence[Path], *, columns: str | None, point: str
+    files: Sequence[Path],
+    *,
+    columns: str | None,
+    point: str,
+    rate: float | None = None,
 ) -> tuple[Recording, ...]:
     """Read the recordings of sessions and hit files.
+
+    Args:
+        files: any.
+        columns: of files that are no sessions.
+        point: where the hammer struck, for these.
+        rate: of those without times [Hz], or None.
 
     Raises:
         BadData: a file cannot be read, or none holds a recording.
@@ -91,8 +125,10 @@ def read_recordings(
         if is_session_name(path):
             found += open_session(path).recordings
         else:
-            samples = read_samples(path, SampleOptions(columns, point))
-            found += samples or (read_recording(path, columns=columns, point=point),)
+            options = SampleOptions(columns, point, rate=rate)
+            found += read_samples(path, options) or (
+                read_recording(path, columns=columns, point=point, rate=rate),
+            )
     if not found:
         names = ", ".join(path.name for path in files)
         raise BadData(f"no recording in {names}; 'jointbench inspect' shows what is")

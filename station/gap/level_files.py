@@ -85,7 +85,7 @@ def _recordings(
     table = model.records
     if table.lines is None or table.rate is None:
         return read_recordings(files, columns=table.columns, point="")
-    request = LineRequest(table.lines, table.rate, level.frf_force)
+    request = LineRequest(table.lines, table.rate, level.frf_force, level.frf_columns)
     return tuple(read_lines(path, request) for path in files)
 
 

@@ -7,6 +7,7 @@ the responses over the force; one period of a multisine of the stated force stan
 it, which is exact for a linear structure alone.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import Column, only_roles, parse_columns
 from jointbench.acquisition.formats.tables import load_table
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.station.gap.frf_levels import read_frf_lines
 
 _ROLES = tuple(quantity.value for quantity in Quantity)
 _OFF_LINE = 1e-3
@@ -37,18 +39,21 @@ class LineRequest:
         channels: of the table, after the frequency, as typed after ``lines =``.
         rate: of the samples [Hz].
         force: rms of the force of an FRF [N]; None for lines with their own force.
+        frf_columns: what a file of FRFs holds, where it does not say.
     """
 
     channels: str
     rate: float
     force: float | None = None
+    frf_columns: str | None = None
 
 
 def read_lines(path: Path, request: LineRequest) -> Recording:
     """Return one period of the record that a table of complex lines describes.
 
     Args:
-        path: delimited text or a .npy file of real numbers.
+        path: delimited text or a .npy file of real numbers; an FRF may be in any
+            file that `modal` reads.
         request: its channels and the rate.
 
     Raises:
@@ -66,6 +71,19 @@ def read_lines(path: Path, request: LineRequest) -> Recording:
             "one of them: give its column alone"
         )
     held = [c for c in columns if request.force is None or c not in forces]
+    if request.force is not None:
+        frfs = read_frf_lines(path, request.frf_columns, held)
+        if frfs is not None:
+            found = dict(zip(held, frfs[1], strict=True))
+            return _sampled(path, request, columns, frfs[0], found)
+    frequency, values = _table(path, held)
+    return _sampled(path, request, columns, frequency, values)
+
+
+def _table(
+    path: Path, held: Sequence[Column]
+) -> tuple[FloatArray, dict[Column, ComplexArray]]:
+    """Return frequency and complex lines of a table, in SI units."""
     wanted = 1 + 2 * len(held)
     values = load_table(path, columns=wanted).values
     if values.shape[0] != wanted:
@@ -76,14 +94,24 @@ def read_lines(path: Path, request: LineRequest) -> Recording:
         )
     if not np.all(np.isfinite(values)):
         raise BadData(f"{named(path)} holds lines without a value; leave them out")
-    lines, period = _line_numbers(path, values[0], request.rate)
-    read = {
+    return values[0], {
         column: column.factor * (values[2 * k + 1] + 1j * values[2 * k + 2])
         for k, column in enumerate(held)
     }
+
+
+def _sampled(
+    path: Path,
+    request: LineRequest,
+    columns: Sequence[Column],
+    frequency: FloatArray,
+    read: Mapping[Column, ComplexArray],
+) -> Recording:
+    """Return one period of complex lines; those of an FRF times a flat force."""
+    lines, period = _line_numbers(path, frequency, request.rate)
     if request.force is not None:
         force = _flat_force(lines.size, request.force)
-        read = {c: force if c in forces else read[c] * force for c in columns}
+        read = {c: read[c] * force if c in read else force for c in columns}
     rows = [_samples(read[column], lines, period) for column in columns]
     return Recording(
         path.stem,

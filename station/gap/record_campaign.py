@@ -7,7 +7,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UnitError
 from jointbench.acquisition.basics.units import to_si
-from jointbench.acquisition.formats.samples.mat_file import read_mat_rows
+from jointbench.acquisition.formats.mat_file import read_mat_rows
 from jointbench.analysis.gap.diagnosis.single_record import (
     SingleRecord,
     Stretch,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.structures.identification.identify_structure import (
     StructureSearch,
@@ -84,6 +85,7 @@ def identified_structure(
     band: str | None = None,
     cache: Path | None = None,
     surfaces: Sequence[Path] = (),
+    options: FrfOptions | None = None,
 ) -> IdentifiedStructure:
     """Identify the joints of a structure.
 
@@ -91,10 +93,11 @@ def identified_structure(
 
     Args:
         model: the structure as TOML.
-        sessions: measured; none where the model names measured modes.
+        sessions: measured, or files of FRFs; none where the model names measured modes.
         band: of the modes, as typed.
         cache: folder that keeps reduced models.
         surfaces: files of the contact surfaces.
+        options: what the user states about files that are no sessions.
 
     Raises:
         BadData: the model or a session cannot be used.
@@ -105,7 +108,7 @@ def identified_structure(
         structure = structure_of(settings, model.parent)
     check_request(settings, structure, sessions)
     surface = _surface(settings, model, surfaces, sessions)
-    measured = measured_states(sessions, band)
+    measured = measured_states(sessions, band, options or FrfOptions())
     check_measured(settings, structure, measured)
     preloads = _preloads(settings, measured)
     sensors = {**sensors_of(settings.hits), **sensors_of(settings.sensors)}

@@ -9,6 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
@@ -22,17 +23,20 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.modes import ModalSettings
+from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.input_files import read_recordings
 from jointbench.station.joints.structure_model import StructureModel, sensors_of
 from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.pipeline.chain import (
     ChainSettings,
     ModalChain,
+    frf_chain,
     judge_hits,
     judged_modes,
 )
 from jointbench.station.pipeline.modal_options import parse_band
 from jointbench.station.pipeline.recordings_by_preload import by_preload
+from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.screen.terminal import working
 
 MEASURED_LABEL = "measured"
@@ -55,19 +59,27 @@ class MeasuredState:
 
 
 def measured_states(
-    sessions: Sequence[Path], band: str | None
+    sessions: Sequence[Path], band: str | None, options: FrfOptions
 ) -> dict[str, MeasuredState]:
-    """Take every session, and every preload in it, to modes.
+    """Take every session, and every preload in it, to modes; and every file of FRFs.
 
     Args:
         sessions: files; a state is named after its file and, where the session holds
-            several preloads, "@" and the preload.
+            several preloads, "@" and the preload. A file of FRFs is one state.
         band: as typed, or None.
+        options: what the user states about files that are no sessions.
     """
     settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
     found: dict[str, MeasuredState] = {}
     for path in sessions:
-        stored = read_recordings([path], columns=None, point="1")
+        frf = read_frf([path], options)
+        if frf is not None:
+            with working(f"fitting modes of {path.stem}"):
+                chain = frf_chain(frf, settings, StageRun())
+            found[path.stem] = MeasuredState(None, chain)
+            continue
+        columns, point = options.columns, options.point
+        stored = read_recordings([path], columns=columns, point=point)
         groups = by_preload(judge_hits(stored, settings))
         for preload, recordings in groups:
             label = path.stem
@@ -148,7 +160,7 @@ def require_named(
     missing = [name for name in names if name not in places]
     if missing:
         raise BadData(
-            f"{missing[0]!r} of the session is not among [{kind}.*] of the model, "
+            f"{missing[0]!r} of the measurement is not among [{kind}.*] of the model, "
             f"which are {list(places)}; add [{kind}.{missing[0]}] with body, "
             "position and direction"
         )

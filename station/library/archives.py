@@ -21,6 +21,7 @@ from jointbench.station.archive.process_outcome import (
 )
 from jointbench.station.files.archive_patterns import result_files
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.library.argument_checks import one_path, require_lists
 from jointbench.station.library.labelled_arrays import dataset
 from jointbench.station.library.result_view import ResultView, Shown
 from jointbench.station.results.processed_file import processed_path
@@ -133,11 +134,9 @@ def process(
     Raises:
         BadData: the session or the recipe cannot be used.
     """
-    file, made = (
-        Path(session),
-        recipe_or_default(None if recipe is None else Path(recipe)),
-    )
-    target = processed_path(file, made) if out is None else Path(out)
+    file = one_path(session, "a session")
+    made = recipe_or_default(None if recipe is None else one_path(recipe, "a recipe"))
+    target = processed_path(file, made) if out is None else one_path(out, "results")
     check_outputs([file], [target])
     outcome = process_task(Task(file, target, stages_folder(target)), made)
     if outcome.unwritable or outcome.state is State.FAILED:
@@ -157,8 +156,11 @@ def archive(results: str | Path | Sequence[str | Path]) -> ResultArchive:
     Raises:
         BadData: there is no result with a quantity.
     """
-    given = [results] if isinstance(results, str | Path) else list(results)
-    found, refused = read_results(result_files([str(one) for one in given]))
+    if not isinstance(results, str | Path):
+        require_lists("['archive/**/*.results.h5']", results=results)
+    given = [results] if isinstance(results, str | Path) else results
+    names = [str(one_path(one, "results, a folder or a pattern")) for one in given]
+    found, refused = read_results(result_files(names))
     kept, _ = without_copies(found)
     rows = table_rows(kept)
     if not rows:

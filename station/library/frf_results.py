@@ -12,6 +12,7 @@ from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.frf.measured_frf import measure_frf
 from jointbench.signal.hits.windows import requested_window
 from jointbench.station.files.frf_files import read_frf
+from jointbench.station.library.argument_checks import require_texts
 from jointbench.station.library.hit_results import (
     JudgedHits,
     Source,
@@ -132,7 +133,8 @@ def frf(
         BadData: no accepted hit, or a file cannot be read.
         UsageError: the recordings have several preloads.
     """
-    settings = modal_settings(None, None, estimator, (), ())
+    require_texts("'H1'", estimator=estimator, columns=columns)
+    settings = modal_settings(None, None, estimator or "H1", (), ())
     if not isinstance(source, Measurement | JudgedHits):
         read = read_frf(paths_of(source), FrfOptions(columns, point))
         if read is not None:

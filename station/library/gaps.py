@@ -10,6 +10,11 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_
 from jointbench.analysis.gap.response.threads import side_by_side
 from jointbench.station.gap.gap_inputs import Examined, examine
 from jointbench.station.gap.gap_options import gap_request
+from jointbench.station.library.argument_checks import (
+    one_path,
+    require_lists,
+    require_texts,
+)
 from jointbench.station.library.measurements import Files, Measurement, paths_of
 from jointbench.station.library.result_view import ResultView, Shown
 from jointbench.station.report.gap_report import gap_report
@@ -111,8 +116,10 @@ def gap(
     else:
         paths_of(source)  # refuses what names no file; a URL stays text
         files = [source] if isinstance(source, str | Path) else source
+    require_texts("'4 kN'", preload=preload)
+    require_lists("['jenkins']", without=without, effects=effects)
     wanted = gap_request(
-        model=None if used is None else Path(used),
+        model=None if used is None else one_path(used, "a bench model"),
         preload=preload,
         without=",".join(without),
         effects=effects,

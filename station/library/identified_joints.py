@@ -6,16 +6,27 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.identified import Identification, JointParameter
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
 )
 from jointbench.signal.modal.modes import ModalSettings
-from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.joints.model_kind import describes_structure
-from jointbench.station.library.measurements import Files, Measurement, paths_of
+from jointbench.station.joints.modes_of_files import modes_of_files
+from jointbench.station.library.argument_checks import (
+    checked_band,
+    one_path,
+    require_lists,
+    require_texts,
+)
+from jointbench.station.library.measurements import (
+    Files,
+    Measurement,
+    paths_of,
+)
 from jointbench.station.library.result_view import ResultView, Shown
 from jointbench.station.pipeline.chain import ChainSettings, run_chain
 from jointbench.station.pipeline.link_stage import identify_joint
@@ -76,16 +87,21 @@ def identify(
     band: tuple[float, float] | None = None,
     surface: Sequence[str | Path] = (),
     cache: str | Path | None = None,
+    columns: str | None = None,
+    averages: int = 0,
 ) -> IdentifiedJoints:
     """Identify the joints of a lumped bench or of a meshed structure.
 
     Args:
         model: bench or structure as TOML.
-        source: recorded measurement or sessions; none where a structure names measured
-            modes itself.
+        source: recorded measurement, sessions, or files of FRFs; none where a structure
+            names measured modes itself.
         band: of the modes [Hz]; None lets the data choose.
         surface: files of the contact surfaces of a structure with a table [contact].
         cache: folder that keeps reduced structures.
+        columns: of files of FRFs or hits that state no units, for example
+            ``"frf:m/s^2/N"``.
+        averages: number of averages of FRFs, where their file gives none.
 
     Returns:
         Parameters with intervals, or why they are not identifiable.
@@ -94,7 +110,11 @@ def identify(
         BadData: the model or a session cannot be used.
         UsageError: a lumped bench without a session.
     """
-    path = Path(model)
+    path = one_path(model, "a model")
+    band = checked_band(band)
+    require_texts("'frf:m/s^2/N'", columns=columns)
+    require_lists("['face-a.csv']", surface=surface)
+    options = FrfOptions(columns, averages=averages)
     if isinstance(source, Measurement):
         sessions = source.files
     else:
@@ -106,13 +126,17 @@ def identify(
             band=None if band is None else f"{band[0]}:{band[1]}",
             cache=None if cache is None else Path(cache),
             surfaces=[Path(one) for one in surface],
+            options=options,
         )
         return IdentifiedJoints(done.result)
     if not sessions:
-        raise UsageError(f"'{path}' is a lumped bench and needs measured sessions")
+        raise UsageError(f"'{path}' is a lumped bench and needs sessions, hits or FRFs")
     settings = ChainSettings(modal=ModalSettings(band=band))
-    recordings = read_recordings(sessions, columns=None, point="1")
-    chain = run_chain(recordings, settings)
+    chain = (
+        run_chain(source.recordings, settings)
+        if isinstance(source, Measurement)
+        else modes_of_files(sessions, options, settings)
+    )
     return IdentifiedJoints(
         identify_joint(read_toml(path, BenchModel), chain.result.model)
     )

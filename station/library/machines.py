@@ -10,6 +10,7 @@ import numpy as np
 from jointbench.analysis.structures.machine.analyse_machine import analyse_machine
 from jointbench.analysis.structures.machine.machine_result import MachineResult
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.library.argument_checks import one_path
 from jointbench.station.library.labelled_arrays import dataset
 from jointbench.station.library.result_view import ResultView, Shown
 from jointbench.station.machine.machine_cache import reduced_machine_of
@@ -82,9 +83,10 @@ def machine(model: str | Path, *, cache: str | Path | None = None) -> ComputedMa
 
     Raises:
         BadData: the model cannot be used.
+        UsageError: a file name is none.
     """
-    path = Path(model)
+    path = one_path(model, "a machine")
     settings = read_toml(path, MachineModel)
-    kept = None if cache is None else Path(cache)
+    kept = None if cache is None else one_path(cache, "a folder")
     reduced = reduced_machine_of(settings, path.parent, kept)
     return ComputedMachine(analyse_machine(reduced, request_of(settings, path.parent)))

@@ -10,16 +10,20 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.formats.columns import HITS_EXAMPLE
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.station.files.input_files import (
     is_session_name,
+    parse_rate,
     read_foreign,
     refuse_twice,
 )
 from jointbench.station.files.session_place import check_session_name
+from jointbench.station.library.argument_checks import one_path, require_texts
 from jointbench.station.library.labelled_arrays import dataset
 from jointbench.station.library.line_plot import AxisView, Curve, line_plot
 from jointbench.station.library.result_view import ResultView, Shown
@@ -140,7 +144,11 @@ _UNITS = {
 
 
 def open_measurement(
-    files: Files, *, columns: str | None = None, point: str = "1"
+    files: Files,
+    *,
+    columns: str | None = None,
+    point: str = "1",
+    rate: str | float | None = None,
 ) -> Measurement:
     """Open sessions, files of hits, or surfaces.
 
@@ -149,6 +157,8 @@ def open_measurement(
         columns: what the columns of plain tables hold, with units, for example
             ``"time:s,force:N,acceleration:m/s^2"`` or ``"x:um,z:um"``.
         point: where the hammer struck, for files that do not say.
+        rate: sample rate of files without times: [Hz], or a text such as
+            ``"25.6 kHz"``.
 
     Returns:
         Recordings and surfaces of all files.
@@ -158,7 +168,9 @@ def open_measurement(
         UsageError: the same data twice.
     """
     paths = paths_of(files)
+    require_texts(f"{HITS_EXAMPLE!r}", columns=columns, point=point)
     refuse_twice(paths)
+    options = SampleOptions(columns, point, rate=parse_rate(rate))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
     sessions: list[Session] = []
@@ -168,7 +180,7 @@ def open_measurement(
             recordings += sessions[-1].recordings
             surfaces += sessions[-1].surfaces
             continue
-        for one in read_foreign(path, columns=columns, point=point):
+        for one in read_foreign(path, options):
             if isinstance(one, Recording):
                 recordings.append(one)
             else:
@@ -191,8 +203,15 @@ def record(url: str, out: str | Path, *, overwrite: bool = False) -> Measurement
     Raises:
         UsageError: the URL is unknown, or the file is there already.
     """
-    path = Path(out)
+    if not isinstance(url, str):
+        raise UsageError(
+            f"{url!r} is no source; give the URL of a bench, for example "
+            "'sim:two-body?seed=1&hits=10'"
+        )
+    path = one_path(out, "the session to write")
     check_session_name(path)
+    if path.exists() and not overwrite:
+        raise UsageError(f"'{path}' is there already; overwrite=True replaces it")
     written = record_session_file(url, path, overwrite=overwrite)
     session = written.session
     return Measurement(

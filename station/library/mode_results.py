@@ -10,6 +10,11 @@ import numpy as np
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.signal.modal.mode_ranking import rate_modes
 from jointbench.station.files.frf_files import read_frf
+from jointbench.station.library.argument_checks import (
+    checked_band,
+    require_lists,
+    require_texts,
+)
 from jointbench.station.library.frf_results import (
     FRF_UNITS,
     MeasuredFrfs,
@@ -140,8 +145,11 @@ def modes(
         BadData: no accepted hit, or a file cannot be read.
         UsageError: the recordings have several preloads; `Measurement.at` selects one.
     """
+    require_texts("'H1'", estimator=estimator, columns=columns)
+    require_lists("[420.0]", keep=keep, drop=drop)
+    band = checked_band(band)
     asked = None if band is None else f"{band[0]}:{band[1]}"
-    settings = modal_settings(asked, order, estimator, keep, drop)
+    settings = modal_settings(asked, order, estimator or "H1", keep, drop)
     found = source
     if not isinstance(found, Measurement | JudgedHits | MeasuredFrfs):
         read = read_frf(paths_of(found), FrfOptions(columns))

@@ -4,6 +4,7 @@
 from pathlib import Path
 
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.library.argument_checks import one_path
 from jointbench.station.report.frf_analysis import report_path
 from jointbench.station.report.session_report import session_page
 from jointbench.station.screen.page import write_report
@@ -29,11 +30,12 @@ def report(
 
     Raises:
         BadData: a file cannot be used.
+        UsageError: a file name is none.
     """
-    given = Path(session)
-    target = report_path(given) if out is None else Path(out)
-    bench = None if model is None else Path(model)
-    points = None if geometry is None else Path(geometry)
+    given = one_path(session, "a session, or a file of FRFs")
+    target = report_path(given) if out is None else one_path(out, "the report")
+    bench = None if model is None else one_path(model, "a bench model")
+    points = None if geometry is None else one_path(geometry, "a geometry")
     check_outputs([p for p in (given, bench, points) if p is not None], [target])
     page, _ = session_page(given, model=bench, geometry=points)
     write_report(page, target)

@@ -86,7 +86,7 @@ def _output(modes: ModalModel, channel: str) -> int:
     names = [label.partition("@")[0] for label in modes.outputs]
     if channel not in names:
         raise BadData(
-            f"the model's channel {channel!r} is not in the session; its channels are "
+            f"the model's channel {channel!r} is not measured; the channels are "
             f"{', '.join(names)}"
         )
     return names.index(channel)

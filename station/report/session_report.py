@@ -34,7 +34,11 @@ from jointbench.station.report.session_analysis import SessionAnalysis, analyse_
 from jointbench.station.report.surface_section import surface_section
 from jointbench.station.results.results_beside import stored_results
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.schemas.geometry_file import Geometry
+from jointbench.station.schemas.geometry_file import (
+    Geometry,
+    geometry_beside_frfs,
+    read_geometry,
+)
 from jointbench.station.screen.joint_text import interval_text
 from jointbench.station.screen.page import placed_sections, write_report
 from jointbench.station.screen.page_parts import DataTable, Report, Section, Text, Tile
@@ -95,10 +99,11 @@ def session_page(
     extracted now, and `run` stores the stages. A file of FRFs, or results made of
     some, is reported as well.
     """
-    points = None if geometry is None else read_toml(geometry, Geometry)
+    points = None if geometry is None else read_geometry(geometry)
     bench = None if model is None else read_toml(model, BenchModel)
     if is_frf_input(session):
         analysis = analyse_frfs(session, results, run)
+        points = points or geometry_beside_frfs(session)
     else:
         content = open_session(session)
         stored = stored_results(session, content.recordings, results)

@@ -110,7 +110,7 @@ def _wire(
 
 def _scene(drawn: DrawnShapes, extent: float) -> Figure:
     """Return fixed axes, so that the view stays still during animation."""
-    unit = " [m]" if drawn.measured else ""
+    unit = f" [{drawn.unit}]" if drawn.measured else ""
     room = 1.2 * _AMPLITUDE * extent
     low, high = drawn.place.min(axis=0) - room, drawn.place.max(axis=0) + room
     axes = {

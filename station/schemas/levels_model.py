@@ -94,7 +94,8 @@ class PortTable(StrictTable):
 class LevelTable(StrictTable):
     """Files of one level; what differs from [records] may be given here.
 
-    `frf_force` says that the files hold an FRF, measured at that rms force.
+    `frf_force` says that the files hold an FRF, measured at that rms force; where they
+    state no units, `frf_columns` does, as ``--columns`` of `modal`.
     """
 
     name: str = Field(min_length=1)
@@ -104,6 +105,7 @@ class LevelTable(StrictTable):
     period: Annotated[int, Field(ge=16)] | None = None
     lead: Annotated[int, Field(ge=0)] | None = None
     frf_force: Force | None = None
+    frf_columns: str | None = None
 
 
 class LevelsModel(StrictTable):

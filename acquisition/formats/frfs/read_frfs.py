@@ -9,6 +9,7 @@ from jointbench.acquisition.basics.registry import Entry, Registry
 from jointbench.acquisition.file_access.text_files import file_size
 from jointbench.acquisition.formats.frfs import (
     mat_frfs,
+    netcdf_frfs,
     numpy_frfs,
     table_frfs,
     universal_frfs,
@@ -23,6 +24,7 @@ def _built_in() -> tuple[FrfFormat, ...]:
         universal_frfs.FORMAT,
         mat_frfs.FORMAT,
         numpy_frfs.FORMAT,
+        netcdf_frfs.FORMAT,
         table_frfs.FORMAT,
     )
 

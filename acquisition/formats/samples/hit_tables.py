@@ -3,6 +3,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,9 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_digest
+from jointbench.acquisition.formats.column_roles import (
+    RATE_EXAMPLE,
+)
 from jointbench.acquisition.formats.columns import (
     HITS_EXAMPLE,
     Column,
@@ -30,10 +34,12 @@ from jointbench.acquisition.formats.even_steps import (
     roundest,
 )
 from jointbench.acquisition.formats.header_units import hit_columns_stated, units_words
+from jointbench.acquisition.formats.samples.array_recordings import require_rate
 from jointbench.acquisition.formats.tables import Table, load_table
 from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
+_TIME = "time"
 _QUANTITIES = tuple(quantity.value for quantity in Quantity)
 
 
@@ -43,6 +49,7 @@ def read_recording(
     columns: str | None,
     name: str | None = None,
     point: str = "1",
+    rate: float | None = None,
 ) -> Recording:
     """Read a table of time and measured columns as a recording.
 
@@ -52,6 +59,7 @@ def read_recording(
             the header of the table states it.
         name: of the recording; the name of the file without its ending if None.
         point: where the hammer struck.
+        rate: sample rate of a table without a column of times [Hz], or None.
 
     Returns:
         The recording in SI units. Its sample rate is the roundest one that the
@@ -65,10 +73,10 @@ def read_recording(
         SamplingError: time stamps or samples are missing, or not in an even row.
     """
     path = Path(path)
-    wanted = None if columns is None else _hit_columns(columns)
+    wanted = None if columns is None else _hit_columns(columns, rate)
     table = load_table(path, columns=None if wanted is None else len(wanted))
     if wanted is None:
-        wanted = hit_columns_stated(table)
+        wanted = hit_columns_stated(table, timed=rate is None)
     if wanted is None:
         raise UnitError(_what_to_type(table))
     if len(wanted) != table.values.shape[0]:
@@ -76,33 +84,56 @@ def read_recording(
             f"{named(path)} has {table.values.shape[0]} columns, --columns names "
             f"{len(wanted)} ({columns}); name each, '-' for one that is not wanted"
         )
-    steps = _time_steps(table, wanted)
     rows = [i for i, c in enumerate(wanted) if c.role in _QUANTITIES]
     channels = _channels([wanted[i] for i in rows], point)
     samples = np.stack([_samples(table, i, wanted[i]) for i in rows])
-    time = _time_column(wanted)
-    second = wanted[time].factor
-    rate = roundest(1 / (steps.high * second), 1 / (steps.low * second))
+    time = next((i for i, c in enumerate(wanted) if c.role == _TIME), None)
+    timing = _stated_rate(rate) if time is None else _timing(table, wanted, time)
+    require_rate(path, timing.rate, rate)
     return Recording(
         name=path.stem if name is None else name,
         samples=samples,
-        sample_rate=rate,
+        sample_rate=timing.rate,
         channels=channels,
-        start_time=float(table.values[time, 0]) * second,
-        provenance=(_origin(table, columns or _as_stated(wanted), steps, second),),
+        start_time=timing.start,
+        provenance=(_origin(table, columns or _as_stated(wanted), timing),),
     )
 
 
-def _origin(table: Table, columns: str, steps: EvenSteps, second: float) -> Step:
-    """Return the origin of the recording; `second` is the unit of its time [s]."""
+@dataclass(frozen=True, slots=True)
+class _Timing:
+    """Rate and start of a recording [Hz, s], and what a column of times showed."""
+
+    rate: float
+    start: float
+    facts: tuple[tuple[str, float], ...]
+
+
+def _stated_rate(rate: float | None) -> _Timing:
+    assert rate is not None  # checked with the columns
+    return _Timing(rate, 0.0, (("rate_stated", rate),))
+
+
+def _timing(table: Table, columns: Sequence[Column], time: int) -> _Timing:
+    """Return the roundest rate that the printed times allow."""
+    steps = _time_steps(table, columns)
+    second = columns[time].factor
+    facts = (
+        ("rate_from_time_span", 1 / (steps.step * second)),
+        ("time_resolution", steps.resolution * second),
+    )
+    rate = roundest(1 / (steps.high * second), 1 / (steps.low * second))
+    return _Timing(rate, float(table.values[time, 0]) * second, facts)
+
+
+def _origin(table: Table, columns: str, timing: _Timing) -> Step:
     return step(
         "import",
         file=table.path.name,
         sha256=file_digest(table.path),
         layout=table.layout,
         columns=columns,
-        rate_from_time_span=1 / (steps.step * second),
-        time_resolution=steps.resolution * second,
+        **dict(timing.facts),
     )
 
 
@@ -111,15 +142,20 @@ def _as_stated(columns: Sequence[Column]) -> str:
     return f"as the file states: {words}"
 
 
-def _hit_columns(spec: str) -> tuple[Column, ...]:
+def _hit_columns(spec: str, rate: float | None) -> tuple[Column, ...]:
     columns = parse_columns(spec)
-    only_roles(columns, ("time", *_QUANTITIES), "a recording of hits")
-    for what, roles in (("time", ("time",)), ("measured", _QUANTITIES)):
-        if not any(column.role in roles for column in columns):
-            raise UsageError(
-                f"--columns {spec!r} names no {what} column; write for example "
-                f"'{HITS_EXAMPLE}'"
-            )
+    only_roles(columns, (_TIME, *_QUANTITIES), "a recording of hits")
+    if not any(column.role in _QUANTITIES for column in columns):
+        raise UsageError(
+            f"--columns {spec!r} names no measured column; write for example "
+            f"'{HITS_EXAMPLE}'"
+        )
+    if rate is None and not any(column.role == _TIME for column in columns):
+        raise UsageError(
+            f"--columns {spec!r} names no time column; write for example "
+            f"'{HITS_EXAMPLE}', or give the rate of samples without times: "
+            f"{RATE_EXAMPLE}"
+        )
     return columns
 
 
@@ -129,12 +165,13 @@ def _what_to_type(table: Table) -> str:
     items = first[: max(2, count)] + [first[-1]] * (count - len(first))
     return (
         f"{named(table.path)} has {count} columns and {units_words(table)}; "
-        f"describe them, for example --columns '{','.join(items)}'"
+        f"describe them (give --rate where no column is the time), for example "
+        f"--columns '{','.join(items)}'"
     )
 
 
 def _time_column(columns: Sequence[Column]) -> int:
-    return next(i for i, column in enumerate(columns) if column.role == "time")
+    return next(i for i, column in enumerate(columns) if column.role == _TIME)
 
 
 def _time_steps(table: Table, columns: Sequence[Column]) -> EvenSteps:

@@ -24,6 +24,10 @@ from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.hdf5_guards import FileLimits, open_guarded
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
+from jointbench.acquisition.formats.netcdf_arrays import NETCDF_SUFFIXES
+from jointbench.acquisition.formats.samples.labelled_recording import (
+    read_labelled_recordings,
+)
 from jointbench.acquisition.formats.samples.sample_format import (
     SampleFormat,
     SampleOptions,
@@ -36,7 +40,6 @@ from jointbench.acquisition.formats.stated_channels import (
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.session_file.store import damage_named
 
-SUFFIXES = (".nc", ".nc4")
 # A chunk takes eight bytes of a sample and a key in the tree of chunks.
 _LIMITS = FileLimits(variable_texts=MOST_CHANNELS, chunk_bytes=32)
 _STREAM = re.compile(r"time_data(?:_(\d{1,6}))?")
@@ -196,8 +199,19 @@ def _texts(path: Path, table: h5py.Group, name: str, count: int) -> list[str]:
     return texts
 
 
+def _is_stream(path: Path) -> bool:
+    """Return whether a file is one of Rattlesnake, or no file of labelled arrays."""
+    try:
+        with h5py.File(path, "r") as file:
+            return "channels" in file and any(map(_STREAM.fullmatch, file))
+    except (OSError, RuntimeError, ValueError):
+        return False
+
+
 def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
+    if not _is_stream(path):
+        return read_labelled_recordings(path, options)
     return read_rattlesnake(path, columns=options.columns, point=options.point)
 
 
-FORMAT = SampleFormat("rattlesnake", SUFFIXES, _read_format)
+FORMAT = SampleFormat("netcdf", NETCDF_SUFFIXES, _read_format)

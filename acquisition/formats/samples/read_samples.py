@@ -10,13 +10,16 @@ from jointbench.acquisition.formats.package_formats import (
     added_by,
     matching_format,
 )
+from jointbench.acquisition.formats.refused_formats import refuse_known
 from jointbench.acquisition.formats.samples import (
     mat_recording,
+    numpy_recording,
     rattlesnake,
     tdms,
     universal,
     wave,
 )
+from jointbench.acquisition.formats.samples.array_recordings import require_rate
 from jointbench.acquisition.formats.samples.sample_format import (
     SampleFormat,
     SampleOptions,
@@ -31,6 +34,7 @@ def _built_in() -> tuple[SampleFormat, ...]:
         mat_recording.FORMAT,
         wave.FORMAT,
         rattlesnake.FORMAT,
+        numpy_recording.FORMAT,
     )
 
 
@@ -54,11 +58,18 @@ def read_samples(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
     Raises:
         BadData: the file is not what it should be, or its units are missing.
         UsageError: two packages take the file.
+        SamplingError: the file states another rate than the user.
     """
     entry = matching_format(
         SAMPLE_FORMATS.entries(), lambda format_: format_.takes(path), path
     )
-    return () if entry is None else _read(entry, path, options)
+    if entry is None:
+        refuse_known(path)
+        return ()
+    found = _read(entry, path, options)
+    for one in found:
+        require_rate(path, one.sample_rate, options.rate)
+    return found
 
 
 def _read(

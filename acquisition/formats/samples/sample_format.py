@@ -18,11 +18,13 @@ class SampleOptions:
         point: where the hammer struck.
         full_scale: value of the largest number of a file of whole numbers, in the
             unit of `columns`; None if not given.
+        rate: sample rate of a file without times [Hz]; None if not given.
     """
 
     columns: str | None = None
     point: str = "1"
     full_scale: float | None = None
+    rate: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ Source:
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,9 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import read_bytes
+from jointbench.acquisition.formats.columns import SKIP, parse_columns
 from jointbench.acquisition.formats.even_steps import roundest
+from jointbench.acquisition.formats.samples.repeated_channels import hits_of_channels
 from jointbench.acquisition.formats.samples.sample_format import (
     SampleFormat,
     SampleOptions,
@@ -37,7 +40,12 @@ from jointbench.acquisition.formats.samples.universal_repairs import (
     unpadded,
     with_latin_units,
 )
-from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
+from jointbench.acquisition.formats.samples.universal_units import unit_of_system
+from jointbench.acquisition.formats.stated_channels import (
+    StatedChannel,
+    quantity_of_unit,
+    recording_of,
+)
 from jointbench.acquisition.records.recordings import Quantity, Recording
 
 SUFFIXES = (".uff", ".unv")
@@ -65,12 +73,17 @@ _QUANTITIES = {
 _DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
 
 
-def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
-    """Read all time histories of a universal file as one recording.
+def read_universal(
+    path: Path, *, columns: str | None, point: str
+) -> tuple[Recording, ...]:
+    """Read the time histories of a universal file, one recording for each hit.
+
+    Histories of the same node and direction that come again are further hits. Where a
+    history states no unit, the units of data set 164 count.
 
     Args:
         path: of the file.
-        columns: what the channels hold, where the file does not say.
+        columns: what the channels of a hit hold, where the file does not say.
         point: where the hammer struck.
 
     Raises:
@@ -79,7 +92,7 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
         SamplingError: the histories have different rates.
         UnitError: see `recording_of`.
     """
-    whole = read_universal_sets(path, kinds=(58,))
+    whole = read_universal_sets(path, kinds=(58, 164))
     sets = [one for one in whole if one.get("func_type") == _TIME_RESPONSE]
     if not sets:
         raise FormatError(
@@ -87,6 +100,47 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
             "FRFs (type 4) are read by `jointbench modal`; `jointbench export` shows "
             "what it has"
         )
+    units = next((one for one in whole if "units_code" in one), {})
+    entities = [_entity(one) for one in sets]
+    channels = [_stated(path, one, units) for one in sets]
+    hits = _hits(channels, entities, columns)
+    return tuple(
+        _recording(
+            path,
+            [sets[i] for i in hit],
+            [
+                replace(channels[i], name=name)
+                for i, name in zip(hit, _names([entities[i] for i in hit]), strict=True)
+            ],
+            (columns, point),
+            path.stem + (f"-{number}" if len(hits) > 1 else ""),
+        )
+        for number, hit in enumerate(hits, 1)
+    )
+
+
+def _hits(
+    channels: Sequence[StatedChannel], entities: Sequence[str], columns: str | None
+) -> list[list[int]]:
+    """Return the histories of each hit; `columns` may state what each is."""
+    if columns is not None and any(one.quantity is None for one in channels):
+        wanted = parse_columns(columns)
+        if len(channels) % len(wanted) == 0 and not any(c.label for c in wanted):
+            given = [wanted[i % len(wanted)] for i in range(len(channels))]
+            channels = [
+                replace(one, quantity=None if c.role == SKIP else Quantity(c.role))
+                for one, c in zip(channels, given, strict=True)
+            ]
+    return hits_of_channels(channels, entities)
+
+
+def _recording(
+    path: Path,
+    sets: Sequence[dict[str, Any]],
+    channels: Sequence[StatedChannel],
+    given: tuple[str | None, str],
+    name: str,
+) -> Recording:
     intervals = {float(one["abscissa_inc"]) for one in sets}
     uneven = any(int(one["abscissa_spacing"]) != 1 for one in sets)
     if uneven or len(intervals) != 1 or not 0.0 < min(intervals) < math.inf:
@@ -96,11 +150,12 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
         )
     return recording_of(
         path,
-        [_stated(name, one) for name, one in zip(_names(sets), sets, strict=True)],
+        channels,
         sample_rate=_rate(intervals.pop()),
-        columns=columns,
-        point=point,
+        columns=given[0],
+        point=given[1],
         layout="universal file, data set 58",
+        name=name,
     )
 
 
@@ -110,19 +165,20 @@ def _rate(interval: float) -> float:
     return roundest(1.0 / high, 1.0 / low)
 
 
-def _stated(name: str, one: dict[str, Any]) -> StatedChannel:
+def _stated(path: Path, one: dict[str, Any], units: dict[str, Any]) -> StatedChannel:
     data = np.asarray(one["data"])
     node = str(one.get("rsp_node") or "")
     kind = _QUANTITIES.get(int(one["ordinate_spec_data_type"]))
     unit = str(one["ordinate_axis_units_lab"]).strip()
+    unit = "" if unit.upper() == "NONE" else unit
     return StatedChannel(
-        name=name,
-        unit="" if unit.upper() == "NONE" else unit,
+        name="",
+        unit=unit or unit_of_system(path, kind, units),
         size=data.size,
         read=partial(_real, data),
         point="" if node == "0" else node,
         direction=_DIRECTIONS.get(int(one.get("rsp_dir") or 0), ""),
-        quantity=kind,
+        quantity=kind or quantity_of_unit(unit),
     )
 
 
@@ -130,13 +186,17 @@ def _real(data: np.ndarray[Any, Any]) -> FloatArray:
     return np.asarray(data.real, dtype=np.float64)
 
 
-def _names(sets: Sequence[dict[str, Any]]) -> list[str]:
+def _entity(one: dict[str, Any]) -> str:
+    entity = str(one.get("rsp_ent_name") or "").strip()
+    return "" if entity.upper() == "NONE" else entity
+
+
+def _names(entities: Sequence[str]) -> list[str]:
     """Return the entity of each set, with its number where that is not its own."""
-    entities = [str(one.get("rsp_ent_name") or "").strip() for one in sets]
     return [
         entity
-        if entity.upper() not in {"", "NONE"} and entities.count(entity) == 1
-        else f"{entity} {number}".removeprefix("NONE").strip()
+        if entity and entities.count(entity) == 1
+        else f"{entity} {number}".strip()
         for number, entity in enumerate(entities, 1)
     ]
 
@@ -241,7 +301,7 @@ def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, A
 
 
 def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
-    return (read_universal(path, columns=options.columns, point=options.point),)
+    return read_universal(path, columns=options.columns, point=options.point)
 
 
 FORMAT = SampleFormat("universal", SUFFIXES, _read_format)

@@ -10,7 +10,8 @@ and never named.
 Source:
     Powers of motion and of speed: the restoring-force surface of Masri and Caughey
     1979, J. Appl. Mech. 46, 433, eq. (9). Powers of s of a channel: the Taylor series
-    of any transfer function about 1.
+    of any transfer function about 1. A delay that grows within the record: the Taylor
+    series of the time that a second clock shows.
 """
 
 import numpy as np
@@ -30,6 +31,7 @@ from jointbench.analysis.gap.response.effect_hooks import (
 
 SOURCE = "Masri and Caughey 1979, J. Appl. Mech. 46, 433, eq. (9)"
 SERIES = "Taylor series of a transfer function about 1"
+CLOCKS = "Taylor series about 0 of the time that a second clock shows"
 RELAXATION = CATALOGUE_SETTINGS.relaxation_times
 
 
@@ -92,6 +94,32 @@ def _bend(name: str, power: int) -> LumpedEffect:
     return LumpedEffect(effect, ("channel",), shape=shape, every_channel=True)
 
 
+def _late(name: str) -> LumpedEffect:
+    """Return a channel whose delay grows within the record, from 0 to the size."""
+
+    def shape(
+        model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
+    ) -> FloatArray:
+        ramp = np.linspace(0.0, 1.0, model.shape[-1])
+        return np.asarray(model - v[0] * rate * ramp * _slope(model))
+
+    effect = _effect(name, "s", "sample", CLOCKS)
+    return LumpedEffect(effect, ("channel",), shape=shape, every_channel=True)
+
+
+def _slope(signal: FloatArray) -> FloatArray:
+    """Return differences of sixth order along the last axis, per sample.
+
+    Simple differences are wrong by a third at a quarter of the sample rate.
+    """
+    ends = [(0, 0)] * (signal.ndim - 1) + [(3, 3)]
+    wide, n = np.pad(signal, ends, mode="edge"), signal.shape[-1]
+    apart = [
+        wide[..., 3 + k : 3 + k + n] - wide[..., 3 - k : 3 - k + n] for k in (1, 2, 3)
+    ]
+    return np.asarray((45.0 * apart[0] - 9.0 * apart[1] + apart[2]) / 60.0)
+
+
 def _relaxation() -> LumpedEffect:
     """Return a spring of a link that relaxes in time."""
     parameters = (
@@ -108,12 +136,20 @@ def _link_inertia(state: ElementState, v: FloatArray) -> ComplexArray:
     return np.asarray((v[0] * state.s * state.s)[None, :])
 
 
-PROBES: tuple[LumpedEffect, ...] = (
+CLOCK_DRIFT = _late("delay that grows within the record")
+"""What a clock of the responses that drifts against that of the force does."""
+LIKE_A_CLOCK = frozenset({"delay", "sensor_lowpass"})
+"""Effects that such a clock imitates if all channels have them."""
+SPRINGS: tuple[LumpedEffect, ...] = (
     _spring("square of the motion", 2, lambda r: r**2),
     _spring("cube of the motion", 3, lambda r: r**3),
     _spring("fourth power of the motion", 4, lambda r: r**4),
     _spring("fifth power of the motion", 5, lambda r: r**5),
     _spring("magnitude of the motion", 1, np.abs),
+)
+"""Shapes of a force that depends on the motion alone."""
+PROBES: tuple[LumpedEffect, ...] = (
+    *SPRINGS,
     _damping("damping proportional to the motion", 1, lambda r: r),
     _damping("damping proportional to the square of the motion", 2, lambda r: r**2),
     _drag("square of the speed", 2, lambda v: v * np.abs(v)),
@@ -129,5 +165,6 @@ PROBES: tuple[LumpedEffect, ...] = (
     _series("curvature of the phase", 3),
     _bend("square of the signal", 2),
     _bend("cube of the signal", 3),
+    CLOCK_DRIFT,
 )
 """Shapes that are tested in addition to the catalogue."""

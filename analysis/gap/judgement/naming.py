@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.judgement.amplitudes import at_the_end, weakest
+from jointbench.analysis.gap.judgement.clock_rival import clock_rival
 from jointbench.analysis.gap.judgement.expected_residual import forgiven, noise_sd
 from jointbench.analysis.gap.judgement.own_parameters import most_unlike
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY
@@ -80,6 +81,7 @@ def accept(
         reason = f"a base parameter is {worst_prior:.1f} sd from its nominal value"
     unexplained = bool(reason)
     reason = reason or _doubt(fit, (base, *others), policy)
+    reason = reason or clock_rival(bench, fit, base)
     return Acceptance(
         passed=not reason,
         reason=reason,

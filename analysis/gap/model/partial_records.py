@@ -54,6 +54,20 @@ class LinearDiscrepancy:
 
 
 @dataclass(frozen=True, slots=True)
+class ShapeBeside:
+    """An elementary shape of the force beside a law.
+
+    Attributes:
+        shape: in words.
+        share: drop of chi2 that a directed test of it predicts, over the drop by the
+            law itself [-].
+    """
+
+    shape: str
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
 class PartialExplanation:
     """The best force law under model error, judged on conditions held out.
 
@@ -68,6 +82,8 @@ class PartialExplanation:
         share: of the base's residual power that the law removes [-].
         left_of_explainable: share of what is not scatter between repeats that the law
             leaves [-]; None without repeats.
+        beside: the elementary shape that explains most beside the law; None for a law
+            that dissipates energy.
         lead: over the base.
         rivals: leads over the best law of each other family or site, closest first.
         levels: softest and hardest level at which the law leads; empty if there is
@@ -85,12 +101,24 @@ class PartialExplanation:
     parameters: tuple[Reported, ...]
     share: float
     left_of_explainable: float | None
+    beside: ShapeBeside | None
     lead: FamilyLead
     rivals: tuple[FamilyLead, ...]
     levels: tuple[str, ...]
     left: Mapping[str, Mapping[str, float]]
     linear: tuple[LinearDiscrepancy, ...]
     reason: str
+
+    @property
+    def explained(self) -> float:
+        """Share of what a law could explain that this one does [-].
+
+        What repeats of a condition show as scatter, no law explains. The larger of two
+        values counts: without that scatter, over the conditions with repeats, and with
+        it, over all conditions.
+        """
+        left = self.left_of_explainable
+        return self.share if left is None else max(self.share, 1.0 - left)
 
 
 def partial_json(found: PartialExplanation) -> dict[str, Any]:
@@ -106,6 +134,7 @@ def partial_json(found: PartialExplanation) -> dict[str, Any]:
         },
         "share_explained": found.share,
         "left_of_explainable": found.left_of_explainable,
+        "beside": None if found.beside is None else asdict(found.beside),
         "lead": asdict(found.lead),
         "rivals": [asdict(r) for r in found.rivals],
         "levels": list(found.levels),

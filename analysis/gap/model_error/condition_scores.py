@@ -77,7 +77,8 @@ class Lead:
 
     Attributes:
         mean: of the gain in log power over the conditions [-].
-        standard_errors: mean over its standard error [-].
+        standard_errors: mean over its standard error, without what the levels and hit
+            points of the conditions explain [-].
         share: of the conditions that show a difference, in which the fit leads [-].
         shown: number of those conditions.
     """
@@ -107,7 +108,7 @@ def lead_of(
     between = bench.powers(second.rows - first.rows)
     expected = mean_log_power(bench, 1.0 + between, condition)
     voting = expected > visible
-    error = gain.std(ddof=1) / np.sqrt(gain.size) if gain.size > 1 else np.inf
+    error = _standard_error(gain, expected)
     share = float(np.mean(gain[voting] > 0)) if voting.any() else 0.0
     return Lead(
         float(gain.mean()),
@@ -115,6 +116,24 @@ def lead_of(
         share,
         int(voting.sum()),
     )
+
+
+def _standard_error(gain: FloatArray, expected: FloatArray) -> float:
+    """Return the standard error of a mean gain over designed conditions.
+
+    A law shows more at high levels than at low ones, whichever explanation is true, so
+    that this spread of the gain is no error of its mean. What is predicted linearly by
+    the difference of the two explanations is taken out.
+
+    Args:
+        gain: of log power, shape (n_conditions,).
+        expected: gain if the first explanation were true and white, same shape.
+    """
+    if gain.size < 3:
+        return float(np.inf)
+    design = np.stack([np.ones(gain.size), expected - expected.mean()], axis=1)
+    rest = gain - design @ np.linalg.lstsq(design, gain, rcond=None)[0]
+    return float(np.sqrt(rest @ rest / (gain.size - 2) / gain.size))
 
 
 def best_of(scores: Sequence[ConditionScores]) -> ConditionScores:

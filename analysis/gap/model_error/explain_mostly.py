@@ -30,6 +30,7 @@ from jointbench.analysis.gap.model_error.model_error_settings import (
     MODEL_ERROR_SETTINGS,
 )
 from jointbench.analysis.gap.model_error.repeat_floor import left_of_explainable
+from jointbench.analysis.gap.model_error.shape_beside import shape_beside
 from jointbench.analysis.gap.residuals.bench_protocol import MeasuredBench, values_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress
@@ -91,15 +92,29 @@ def _doubt(found: PartialExplanation, policy: Policy) -> str:
     if close:
         families = " and ".join(dict.fromkeys(close))
         return f"but its lead over {families} is not clear"
-    if found.share < policy.mostly_share:
-        return f"less than {100 * policy.mostly_share:.0f} %"
-    left = found.left_of_explainable
-    if left is not None and left > policy.mostly_left:
+    if found.explained < policy.mostly_share:
         return (
-            f"but leaves {100 * left:.0f} % of what repeats do not show as scatter "
-            f"(limit {100 * policy.mostly_left:.0f} %)"
+            f"but explains {100 * found.explained:.0f} % of what is not scatter "
+            f"between repeats (limit {100 * policy.mostly_share:.0f} %)"
         )
-    return ""
+    return _shape_doubt(found, policy)
+
+
+def _shape_doubt(found: PartialExplanation, policy: Policy) -> str:
+    """Return the doubt about the shape of an elastic law, or empty.
+
+    A law that leaves little is near enough, whatever shape that has.
+    """
+    beside, left = found.beside, found.left_of_explainable
+    if beside is None or (left is not None and left <= policy.mostly_left):
+        return ""
+    if beside.share <= policy.mostly_beside:
+        return ""
+    return (
+        f"but the {beside.shape} beside it would explain {100 * beside.share:.2g} % of "
+        f"what it does (limit {100 * policy.mostly_beside:.2g} %): it may stand in for "
+        "another law"
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -176,6 +191,7 @@ def _explanation(
         left_of_explainable=left_of_explainable(
             scores.fits.bench, scores.base, scores.best
         ),
+        beside=shape_beside(scores.fits.bench, scores.base.fit, fit),
         lead=lead,
         rivals=tuple(rivals),
         levels=_levels(scores),

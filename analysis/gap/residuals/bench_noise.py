@@ -197,11 +197,16 @@ def _expanded(
 
 
 def _patterns(campaign: Campaign) -> FloatArray:
-    """Return possible trends over the records, shape (n_patterns, n_records)."""
+    """Return possible trends over the records, shape (n_patterns, n_records).
+
+    A change with time need not be a line: warming up bends it.
+    """
+    order = campaign.order.astype(float)
     return np.stack(
         [
             np.log(campaign.preload),
-            campaign.order.astype(float),
+            order,
+            (order - order.mean()) ** 2,
             np.log(campaign.level),
             campaign.hit.astype(float),
         ]

@@ -54,7 +54,30 @@ Preload = Annotated[
     ),
 ]
 Sessions = Annotated[
-    list[Path] | None, typer.Argument(metavar="SESSION", help="Session files (.h5).")
+    list[Path] | None,
+    typer.Argument(
+        metavar="SESSION", help="Sessions (.h5), files of hits or files of FRFs."
+    ),
+]
+Rate = Annotated[
+    str | None,
+    typer.Option(
+        metavar="QUANTITY",
+        help="Sample rate of files without times, for example '25.6 kHz'.",
+    ),
+]
+Guess = Annotated[
+    bool,
+    typer.Option(
+        "--guess", help="Propose columns, units and rate, and show the first hit."
+    ),
+]
+Yes = Annotated[bool, typer.Option("--yes", help="With --guess: write without asking.")]
+Picture = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="PATH", help="With --guess: HTML file with a plot of the first hit."
+    ),
 ]
 FullScale = Annotated[
     float | None,

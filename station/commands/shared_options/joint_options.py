@@ -31,3 +31,12 @@ ContactSurfaces = Annotated[
         help="Measured contact surface for the table [contact]; give one or both.",
     ),
 ]
+ChainSurfaces = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--surface",
+        metavar="PATH",
+        help="Measured contact surface of the joint: diagnose the whole chain; the "
+        "model needs a table [bolted_joint]. Give one or both.",
+    ),
+]

@@ -60,6 +60,6 @@ GeometryFile = Annotated[
     typer.Option(
         "--geometry",
         metavar="PATH",
-        help="Points and lines (TOML) on which mode shapes are drawn.",
+        help="Points and lines (TOML or universal file) to draw mode shapes on.",
     ),
 ]

@@ -9,6 +9,7 @@ import pytest
 import scipy.io
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.formats.samples.universal import read_universal
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.archive.process_file import Task, process_task
@@ -57,7 +58,7 @@ def test_samples_come_back(
     path = make_session("s.h5")
     wanted = read_session(path).recordings[0]
     file = exported(path, kind)[name]
-    (found,) = read_foreign(file, columns=columns, point="1")
+    (found,) = read_foreign(file, SampleOptions(columns))
     assert found.sample_rate == wanted.sample_rate
     assert np.allclose(found.samples, wanted.samples, rtol=allowed, atol=0.0)
     assert [c.quantity for c in found.channels] == [c.quantity for c in wanted.channels]

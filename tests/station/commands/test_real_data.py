@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.surfaces import Areal, all_valid
 from jointbench.simulators.rough_surfaces.surface_files import write_keyence_csv
-from jointbench.station.commands.import_command import run_import
+from jointbench.station.commands.import_command import ImportRequest, run_import
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.commands.surface_command import run_surface
 
@@ -44,7 +45,9 @@ def modes(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, float]]:
     session, found = folder / "hits.h5", folder / "modes.json"
     files = [DATA / "hits" / f"measurements_{n}.npy" for n in (1, 2, 3)]
     run_import(
-        files, session, columns=COLUMNS, point="1", overwrite=False, json_target=None
+        files,
+        session,
+        ImportRequest(SampleOptions(COLUMNS), overwrite=False, json_target=None),
     )
     run_modal([session], json_target=str(found))
     content: list[dict[str, float]] = json.loads(found.read_text())["modes"]

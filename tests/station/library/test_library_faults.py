@@ -1,5 +1,6 @@
 """Wrong arguments of the library, and contact of surfaces without a fractal law."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,44 @@ def test_what_names_no_file_is_refused() -> None:
             jb.open(wrong)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="no file"):
         jb.gap([])
+
+
+def test_arguments_of_another_type_are_refused_in_one_line(tmp_path: Path) -> None:
+    """Of every function: what is wanted, not what Python could not do."""
+    bench = tmp_path / "bench.toml"
+    bench.write_text(
+        '[bodies.a]\nmass = "1 kg"\n[links.b]\nbetween = ["ground", "a"]\n'
+    )
+    there = tmp_path / "s.h5"
+    there.touch()
+    wrong: list[Callable[[], object]] = [
+        lambda: jb.identify(None),  # type: ignore[arg-type]
+        lambda: jb.identify(bench, band=3),  # type: ignore[arg-type]
+        lambda: jb.identify(bench, surface=None),  # type: ignore[arg-type]
+        lambda: jb.machine(None),  # type: ignore[arg-type]
+        lambda: jb.process(None),  # type: ignore[arg-type]
+        lambda: jb.process(there, 3),  # type: ignore[arg-type]
+        lambda: jb.report(None),  # type: ignore[arg-type]
+        lambda: jb.report(there, out=3),  # type: ignore[arg-type]
+        lambda: jb.archive(None),  # type: ignore[arg-type]
+        lambda: jb.archive([None]),  # type: ignore[arg-type]
+        lambda: jb.record(None, there),  # type: ignore[arg-type]
+        lambda: jb.record("sim:two-body?seed=1", None),  # type: ignore[arg-type]
+        lambda: jb.gap(there, model=3),  # type: ignore[arg-type]
+        lambda: jb.gap(there, preload=3),  # type: ignore[arg-type]
+        lambda: jb.gap(there, effects=None),  # type: ignore[arg-type]
+        lambda: jb.modes(there, band=3),  # type: ignore[arg-type]
+        lambda: jb.modes(there, keep=None),  # type: ignore[arg-type]
+        lambda: jb.open(there, rate=[]),  # type: ignore[arg-type]
+        lambda: jb.open(there, columns=3),  # type: ignore[arg-type]
+    ]
+    for call in wrong:
+        with pytest.raises(UsageError, match="give "):
+            call()
+    with pytest.raises(UsageError, match="overwrite=True replaces it"):
+        jb.record("sim:two-body?seed=1", there)
+    with pytest.raises(UsageError, match="needs sessions, hits or FRFs"):
+        jb.identify(bench)
 
 
 def test_quantities_without_unit_are_refused() -> None:

@@ -11,10 +11,11 @@ import pytest
 
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.file_access.file_lock import hold_lock, is_held
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.session import new_session
 from jointbench.acquisition.session_file.overwrite_guard import fresh_path
 from jointbench.acquisition.session_file.store import read_session, write_session
-from jointbench.station.commands.import_command import run_import
+from jointbench.station.commands.import_command import ImportRequest, run_import
 from jointbench.station.commands.record_command import run_record
 from jointbench.station.commands.verify_command import run_recover, run_verify
 from jointbench.station.main import app, exit_code
@@ -190,10 +191,7 @@ def test_import_replaces_nothing_that_is_no_session(tmp_path: Path, kind: str) -
         run_import(
             [hits_file(tmp_path)],
             path,
-            columns=None,
-            point="1",
-            overwrite=True,
-            json_target=None,
+            ImportRequest(SampleOptions(), overwrite=True, json_target=None),
         )
     assert path.exists()
 

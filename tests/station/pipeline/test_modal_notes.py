@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import NoModeFound
-from jointbench.station.commands.import_command import run_import
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
+from jointbench.station.commands.import_command import ImportRequest, run_import
 from jointbench.station.commands.modal_command import run_modal
 
 RATE = 25600.0
@@ -49,7 +50,7 @@ def files(
 
 def modal(paths: list[Path], folder: Path) -> dict[str, Any]:
     """Run the command and return its JSON."""
-    run_modal(paths, columns=COLUMNS, json_target=str(folder / "m.json"))
+    run_modal(paths, samples=SampleOptions(COLUMNS), json_target=str(folder / "m.json"))
     content: dict[str, Any] = json.loads((folder / "m.json").read_text())
     return content
 
@@ -77,10 +78,11 @@ def test_milliseconds_given_as_seconds_are_reported_by_import_and_modal(
     run_import(
         paths,
         tmp_path / "s.h5",
-        columns=COLUMNS,
-        point="1",
-        overwrite=False,
-        json_target=str(tmp_path / "i.json"),
+        ImportRequest(
+            SampleOptions(COLUMNS),
+            overwrite=False,
+            json_target=str(tmp_path / "i.json"),
+        ),
     )
     assert "'time:ms'" in json.loads((tmp_path / "i.json").read_text())["warnings"][0]
     assert capsys.readouterr().out.count("warning: recording 'hit0'") == 2

@@ -20,8 +20,9 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.formats.samples import rattlesnake as rattlesnake_module
-from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
+from jointbench.acquisition.formats.samples.mat_recording import read_mat_recordings
 from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.formats.samples.tdms import read_tdms
 from jointbench.acquisition.formats.samples.universal import read_universal
 from jointbench.acquisition.formats.samples.wave import read_wave
@@ -59,7 +60,7 @@ def universal(path: Path, *, unit: str = "g", count: int = 50, kind: int = 12) -
 
 def test_a_universal_file_states_units_points_and_directions(tmp_path: Path) -> None:
     """N stays, g becomes m/s^2, node 7 in -z is point 7, and the rate is 6400 Hz."""
-    found = read_universal(universal(tmp_path / "u.uff"), columns=None, point="1")
+    (found,) = read_universal(universal(tmp_path / "u.uff"), columns=None, point="1")
     np.testing.assert_allclose(found.samples[0], ROWS[0], rtol=1e-10)
     np.testing.assert_allclose(found.samples[1], 9.80665 * ROWS[1], rtol=1e-10)
     assert found.sample_rate == RATE
@@ -75,7 +76,7 @@ def test_a_universal_file_without_a_unit_is_refused_with_what_to_type(
     with pytest.raises(UnitError, match=r"force\.force:N,acceleration\.a1:"):
         read_universal(path, columns=None, point="1")
     columns = "force.force:N,acceleration.a1:m/s^2"
-    found = read_universal(path, columns=columns, point="1")
+    (found,) = read_universal(path, columns=columns, point="1")
     np.testing.assert_allclose(found.samples[1], ROWS[1], rtol=1e-10)
 
 
@@ -117,7 +118,7 @@ def test_binary_time_histories_are_read_bit_for_bit(tmp_path: Path, order: int) 
         parts.append(head.encode() + values + b"    -1\n")
     whole = tmp_path / "whole.uff"
     whole.write_bytes(b"".join(parts))
-    found = read_universal(whole, columns=None, point="1")
+    (found,) = read_universal(whole, columns=None, point="1")
     assert np.array_equal(found.samples, ROWS)
     assert found.sample_rate == RATE
     whole.write_bytes(whole.read_bytes()[:-200])
@@ -140,7 +141,7 @@ def test_a_mat_file_that_was_cut_is_refused_as_that(tmp_path: Path) -> None:
     scipy.io.savemat(path, content)
     path.write_bytes(path.read_bytes()[:-300])
     with pytest.raises(FormatError, match="cut short"):
-        read_mat_recording(path, columns=MAT, point="1")
+        read_mat_recordings(path, SampleOptions(MAT))
 
 
 def test_mat_variables_are_channels_by_their_labels(tmp_path: Path) -> None:
@@ -148,14 +149,14 @@ def test_mat_variables_are_channels_by_their_labels(tmp_path: Path) -> None:
     path = tmp_path / "m.mat"
     time = 1e3 * np.arange(50) / RATE
     scipy.io.savemat(path, {"t": time, "F": ROWS[0], "a1": ROWS[1]})
-    found = read_mat_recording(path, columns=MAT, point="1")
+    (found,) = read_mat_recordings(path, SampleOptions(MAT))
     np.testing.assert_allclose(found.samples[0], 1e3 * ROWS[0])
     assert found.sample_rate == pytest.approx(RATE)
     assert found.channels[0].point == "3"
-    with pytest.raises(UnitError, match="t, F, a1"):
-        read_mat_recording(path, columns=None, point="1")
+    with pytest.raises(UnitError, match=r"'t' .*, 'F' .*, 'a1'"):
+        read_mat_recordings(path, SampleOptions(None))
     with pytest.raises(UsageError, match="one time"):
-        read_mat_recording(path, columns="force.F:N", point="1")
+        read_mat_recordings(path, SampleOptions("force.F:N"))
 
 
 def test_a_mat_channel_of_another_length_is_refused(tmp_path: Path) -> None:
@@ -164,7 +165,7 @@ def test_a_mat_channel_of_another_length_is_refused(tmp_path: Path) -> None:
     time = np.arange(50) / RATE * 1e3
     scipy.io.savemat(path, {"t": time, "F": ROWS[0], "a1": ROWS[1][:40]})
     with pytest.raises(SamplingError, match="40 samples, the time 50"):
-        read_mat_recording(path, columns=MAT, point="1")
+        read_mat_recordings(path, SampleOptions(MAT))
 
 
 def test_a_wav_file_needs_units_and_full_scale(tmp_path: Path) -> None:
@@ -381,7 +382,7 @@ def test_mutated_files_are_read_or_refused_in_one_line(
             lambda p: read_universal(p, columns=None, point=""),
         ),
         (tdms(tmp_path / "t.tdms"), lambda p: read_tdms(p, columns=None, point="")),
-        (tmp_path / "m.mat", lambda p: read_mat_recording(p, columns=MAT, point="")),
+        (tmp_path / "m.mat", lambda p: read_mat_recordings(p, SampleOptions(MAT))),
         (tmp_path / "w.wav", lambda p: read_wave(p, columns=wave, point="")),
         (
             rattlesnake(tmp_path / "r.nc4"),

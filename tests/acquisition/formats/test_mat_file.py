@@ -11,7 +11,7 @@ import scipy.io
 from numpy.testing import assert_array_equal
 
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
-from jointbench.acquisition.formats.samples.mat_file import read_mat_rows
+from jointbench.acquisition.formats.mat_file import read_mat_rows
 
 ROW = np.linspace(-1.0, 1.0, 600)
 

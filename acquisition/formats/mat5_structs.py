@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.acquisition.formats.samples.mat_file import require_sane_mat
+from jointbench.acquisition.formats.mat_file import require_sane_mat
 
 _HEADER, _TAG = 128, 8
 _COMPRESSED, _MATRIX = 15, 14
