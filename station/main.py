@@ -38,6 +38,7 @@ from jointbench.station.commands.joint_commands import (
     gap_command,
     identify_command,
     machine_command,
+    next_command,
 )
 from jointbench.station.commands.profile_command import profile_command
 from jointbench.station.commands.recorded_data_commands import (
@@ -94,6 +95,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "pressure-map": pressure_map_command,
         "machine": machine_command,
         "gap": gap_command,
+        "next": next_command,
     },
     "Files": {
         "example": example_command,

@@ -78,7 +78,7 @@ class JointCampaign:
 
 
 @dataclass(frozen=True, eq=False)
-class _Plan:
+class JointPlan:
     """States and quantities of a joint that is about to be measured."""
 
     contact: RoughContact
@@ -94,13 +94,13 @@ class _Plan:
 
 def make_joint(seed: int, effect: str) -> JointCampaign:
     """Return a joint with a hidden effect, or with none."""
-    plan = _plan(np.random.default_rng([seed, 77]), effect)
-    law, plan = _measured_law(plan)
-    sds = _value_sds(plan)
+    plan = plan_joint(np.random.default_rng([seed, 77]), effect)
+    law, plan = measured_law(plan)
+    sds = value_sds(plan)
     n = plan.states.torque.size
-    clean = _data(plan, _truth(plan, seed, np.ones((6, n))), sds)
-    plan, factors = _scattered(plan)
-    measured = _data(plan, _truth(plan, seed, factors), sds, noisy=True)
+    clean = data_of(plan, truth_of(plan, seed, np.ones((6, n))), sds)
+    plan, factors = scattered(plan)
+    measured = data_of(plan, truth_of(plan, seed, factors), sds, noisy=True)
     site = {
         "radiated_damping": "joint:normal",
         "gas_film": "joint:normal",
@@ -109,7 +109,8 @@ def make_joint(seed: int, effect: str) -> JointCampaign:
     return JointCampaign(seed, effect, site, measured, clean, law)
 
 
-def _plan(rng: np.random.Generator, effect: str) -> _Plan:
+def plan_joint(rng: np.random.Generator, effect: str) -> JointPlan:
+    """Return states, facts and contact of a joint."""
     levels = int(rng.integers(4, 9))
     ratio = rng.uniform(6.0, 20.0)
     torque = np.geomspace(1.0, ratio, levels) * rng.uniform(5.0, 12.0)
@@ -154,7 +155,7 @@ def _plan(rng: np.random.Generator, effect: str) -> _Plan:
     contact = RoughContact(kind, 1e-6, 3e-6, area, modulus, facts.poisson)
     loaded = replace(contact, area=_loaded_area(facts, effect))
     rms = start_rms(loaded, float(nominal.min()), rng.uniform(2.3, 2.7))
-    return _Plan(
+    return JointPlan(
         replace(contact, rms=rms),
         facts,
         states,
@@ -186,7 +187,7 @@ def _keys(rng: np.random.Generator, effect: str) -> list[str]:
     return keys
 
 
-def _measured_law(plan: _Plan) -> tuple[PreloadLaw, _Plan]:
+def measured_law(plan: JointPlan) -> tuple[PreloadLaw, JointPlan]:
     """Return the law of the surface as measured, with its errors."""
     contact, rng, s = plan.contact, plan.rng, summits(plan.contact.kind)
     height, slope, bend = 1.0, s.slope, s.line_curvature
@@ -208,7 +209,7 @@ def _measured_law(plan: _Plan) -> tuple[PreloadLaw, _Plan]:
     return law, replace(plan, facts=replace(plan.facts, modulus=given[3][0]))
 
 
-def _truth(plan: _Plan, seed: int, factors: Array) -> Array:
+def truth_of(plan: JointPlan, seed: int, factors: Array) -> Array:
     """Return true stiffness and damping of each state, shape (6, n_states).
 
     Args:
@@ -253,7 +254,7 @@ def _truth(plan: _Plan, seed: int, factors: Array) -> Array:
     return np.array([kn, kt, kt, kr, cn, ct])
 
 
-def _preload(plan: _Plan) -> Array:
+def _preload(plan: JointPlan) -> Array:
     """Return the true preload of each state without scatter [N]."""
     states, rng, p = plan.states, plan.rng, plan.true_preload.copy()
     if plan.effect == "prevailing_torque":
@@ -267,7 +268,7 @@ def _preload(plan: _Plan) -> Array:
 
 
 def _in_series(
-    plan: _Plan, p: Array, stiffness: tuple[Array, Array, Array], lever: float
+    plan: JointPlan, p: Array, stiffness: tuple[Array, Array, Array], lever: float
 ) -> tuple[Array, Array, Array]:
     """Return kn, kt and kr with bodies, waves, patches or a film."""
     kn, kt, kr = stiffness
@@ -305,7 +306,7 @@ def _in_series(
 
 
 def _damped(
-    plan: _Plan, p: Array, damping: tuple[Array, Array], slip: Array
+    plan: JointPlan, p: Array, damping: tuple[Array, Array], slip: Array
 ) -> tuple[Array, Array]:
     """Return cn and ct with what leaves or is lost beside the contact's own loss."""
     cn, ct = damping
@@ -326,14 +327,14 @@ def _damped(
     return cn, ct
 
 
-def _value_sds(plan: _Plan) -> dict[str, float]:
+def value_sds(plan: JointPlan) -> dict[str, float]:
     """Return the relative sd of the values of each quantity."""
     rng = plan.rng
     sds = {key: rng.uniform(0.01, 0.03) for key in ("kn", "kt", "kr")}
     return sds | {key: rng.uniform(0.04, 0.12) for key in ("cn", "ct")}
 
 
-def _scattered(plan: _Plan) -> tuple[_Plan, Array]:
+def scattered(plan: JointPlan) -> tuple[JointPlan, Array]:
     """Return the plan with scattered preloads, and the contact of each assembly."""
     rng, states = plan.rng, plan.states
     n, count = states.torque.size, int(states.assembly.max()) + 1
@@ -351,8 +352,8 @@ def _scattered(plan: _Plan) -> tuple[_Plan, Array]:
     return replace(plan, states=states, true_preload=preload), factors
 
 
-def _data(
-    plan: _Plan, table: Array, sds: dict[str, float], *, noisy: bool = False
+def data_of(
+    plan: JointPlan, table: Array, sds: dict[str, float], *, noisy: bool = False
 ) -> JointData:
     """Return the joint as measured, with the errors of identification if noisy."""
     n = plan.states.torque.size

@@ -127,6 +127,8 @@ def make_surface(seed, truth):
     if truth in (*MAP_EFFECTS, "isotropic"):
         return _made_map(rng, seed, truth)
     points = int(rng.integers(3000, 7000))
+    if truth == "second_process":
+        points *= 3
     pitch = float(10 ** rng.uniform(-6.6, -5.8))
     hurst = float(rng.uniform(0.35, 0.85))
     size = float(10 ** rng.uniform(-8.0, -7.0))
@@ -167,7 +169,7 @@ def _rolloff(rng, fine, hurst, facts):
 
 def _second(rng, fine, hurst, facts):
     """Add a rougher process to a smoother one, or memories of two exponents."""
-    lag = int(FINER * np.exp(rng.uniform(np.log(10.0), np.log(50.0))))
+    lag = int(FINER * np.exp(rng.uniform(np.log(20.0), np.log(120.0))))
     smooth, rough = rng.uniform(0.8, 0.95), rng.uniform(0.1, 0.25)
     facts |= {"equal_lag": lag / FINER, "smooth": smooth, "rough": rough}
     if rng.random() < 0.5:

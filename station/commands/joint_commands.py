@@ -350,6 +350,42 @@ def _refuse_with_surface(
         )
 
 
+def next_command(
+    joints: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="JOINT",
+            help="Joint over its preload (TOML), and later sessions of it.",
+        ),
+    ],
+    plan: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PATH", help="Plan of the first session (TOML): sensors, points."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="Plan of the next session to write (TOML)."),
+    ] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Rank the next experiments on a joint.
+
+    Where 'gap' is ambiguous or unknown, outcomes of candidate series of torques are
+    simulated under every explanation that survives; the best one becomes a plan.
+
+    Examples:
+        jointbench next joint.toml --plan plates.toml --out next.toml
+        jointbench measure next.toml --out session-2.h5
+        jointbench gap joint.toml joint-2.toml
+    """
+    from jointbench.station.gap.next_session import run_next
+
+    run_next(joints, plan=plan, out=out, json_target=json)
+
+
 def machine_command(
     model: Annotated[
         Path,

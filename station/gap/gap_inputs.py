@@ -30,7 +30,7 @@ from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.contact_section import contact_sections
 from jointbench.station.gap.frf_levels import refuse_frfs
-from jointbench.station.gap.joint_state_files import names_states, read_joint
+from jointbench.station.gap.joint_state_files import names_states, read_joints
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
 from jointbench.station.gap.measured_curves import (
@@ -211,17 +211,19 @@ def _examine_joint(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
     """Examine a joint over its preload, with a contact law as base."""
-    if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
+    if wanted.model is not None or wanted.preload is not None:
         raise UsageError(
-            f"'{paths[0]}' names its states, facts and contact law: give it alone"
+            f"'{paths[0]}' names its states, facts and contact law: leave --model and "
+            "--preload out"
         )
+    refuse_twice(paths)
     _refuse_curves(wanted)
     if wanted.extended:
         raise UsageError(
             "--effects and --with do not apply to a joint over its preload"
         )
     progress("reading the states")
-    data, law = read_joint(paths[0])
+    data, law = read_joints(paths)
     done = diagnose_contact(data, law, without=wanted.without, progress=progress)
     return Examined(data.name, done.found, sections=contact_sections(done))
 

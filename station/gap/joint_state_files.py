@@ -2,6 +2,7 @@
 """Read a joint over its preload from TOML, a table of states, or identifications."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     JointStates,
 )
 from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
+from jointbench.analysis.gap.next_experiment.contact_series import joined_data
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
 from jointbench.station.gap.identified_values import identified_value
@@ -93,6 +95,22 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
         _rows(values, states, _covariance(path, model, len(values))),
     )
     return data, contact_law(model.law, model.bodies, facts)
+
+
+def read_joints(paths: Sequence[Path]) -> tuple[JointData, PreloadLaw]:
+    """Read the sessions of one joint as one; facts and law are those of the first.
+
+    Args:
+        paths: of TOML files, in the order of the sessions; every session is an
+            assembly of its own.
+
+    Raises:
+        BadData: a file breaks a rule.
+    """
+    data, law = read_joint(paths[0])
+    for path in paths[1:]:
+        data = joined_data(data, read_joint(path)[0])
+    return data, law
 
 
 def _states(states: tuple[JointStateTable, ...]) -> JointStates:

@@ -33,6 +33,11 @@ from jointbench.analysis.gap.model.diagnosis_record import (
 )
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.next_experiment.contact_forecast import rank_series
+from jointbench.analysis.gap.next_experiment.ranked_experiment import (
+    RankedExperiment,
+    advice,
+)
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
@@ -55,6 +60,8 @@ class ContactDiagnosis:
         bench: of the fits.
         base: fit of the base.
         best: fit that is shown; the base unless an effect is accepted.
+        experiments: candidates for the next one, by gain per hour of bench time; empty
+            where nothing is left to decide.
     """
 
     found: Diagnosis
@@ -63,6 +70,7 @@ class ContactDiagnosis:
     bench: ContactBench
     base: Fit
     best: Fit
+    experiments: tuple[RankedExperiment, ...] = ()
 
 
 @one_thread()
@@ -109,6 +117,7 @@ def conclude_contact(outcome: SearchOutcome, bench: ContactBench) -> ContactDiag
     """
     verdict = contact_verdict(outcome, bench)
     finding, base = verdict.finding, outcome.base
+    experiments = _next(outcome, bench, verdict)
     accepted = finding in (Finding.NAMED, Finding.AMBIGUOUS)
     best = outcome.best if accepted else base
     before = hold_out_torques(bench, base)
@@ -144,13 +153,24 @@ def conclude_contact(outcome: SearchOutcome, bench: ContactBench) -> ContactDiag
             outcome.base_screening.largest,
             outcome.base_screening.threshold,
         ),
-        experiment=verdict.step,
+        experiment=advice(experiments) or verdict.step,
         reason=verdict.reason,
         explanations=tuple(_labels(f) for f in outcome.level if accepted),
         policy=bench.policy,
         closest=_closest(outcome, bench, finding),
     )
-    return ContactDiagnosis(found, before, after, bench, base, best)
+    return ContactDiagnosis(found, before, after, bench, base, best, experiments)
+
+
+def _next(
+    outcome: SearchOutcome, bench: ContactBench, verdict: DiagnosisVerdict
+) -> tuple[RankedExperiment, ...]:
+    """Return experiments that separate what survives, or the best of what does not."""
+    if verdict.finding is Finding.AMBIGUOUS or len(outcome.level) > 1:
+        return rank_series(bench, outcome.level, accepted=True)
+    if verdict.unexplained:
+        return rank_series(bench, outcome.ranked, accepted=False)
+    return ()
 
 
 def contact_verdict(outcome: SearchOutcome, bench: ContactBench) -> DiagnosisVerdict:

@@ -158,8 +158,8 @@ def _plateau(least: float) -> Effect:
             ),
             wavelength("finish_rolloff", least / 6.0, 30.0, (0.002, 0.03)),
             free_shape("skewness"),
-            free_shape("bend_skewness"),
-            free_shape("bend_kurtosis"),
+            free_shape("bend_skewness", -1.5, 1.5),
+            free_shape("bend_kurtosis", -1.0, 3.0),
         ),
         source="the lower of two processes: ISO 21920-2:2021, annex on stratified "
         "surfaces",
