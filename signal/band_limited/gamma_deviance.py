@@ -16,5 +16,15 @@ def expected_deviance(count: FloatArray) -> tuple[float, float]:
     Source:
         Moments of ln of a gamma variable; the variance by a normal expansion.
     """
-    mean = 2 * count * (np.log(count) - digamma(count))
+    mean = mean_deviance(count)
     return float(mean.sum()), float(np.sqrt(np.sum(2 * mean**2)))
+
+
+def mean_deviance(count: FloatArray) -> FloatArray:
+    """Return the mean gamma deviance of each bin of a right model, shape (n_bins,).
+
+    Args:
+        count: independent ordinates of each bin [-], shape (n_bins,).
+    """
+    mean: FloatArray = 2 * count * (np.log(count) - digamma(count))
+    return mean

@@ -87,11 +87,12 @@ def separate_repeated(
             # One split a cluster: what else may be hidden in it is only remarked on.
             frequency = np.abs(found.modes.pole[used]) / (2.0 * np.pi)
             pairs, frequency = np.split(frequency, [2 * found.count])
+            half = found.peak.width / (2.0 * np.pi)
             hints.extend([] if found.complete else pairs.tolist())
             hints.extend(
                 float(f)
                 for f, n in zip(frequency, along, strict=True)
-                if _second_rank(model, n)
+                if _second_rank(model, n) or np.min(np.abs(f - pairs)) < half
             )
         elif found.possible:
             hints.append(float(model.natural_frequency[number]))

@@ -122,7 +122,7 @@ def make_campaign(
         pairs = [_hide(scale, each, margin, size, rng) for each in effects]
         hidden = tuple(effect for effect, _ in pairs)
         margins = tuple(known or expected_margin(scale, e) for e, known in pairs)
-    force, acceleration = _with_noise(design, *simulate_records(design, hidden))
+    force, acceleration = noisy(design, *simulate_records(design, hidden))
     return SimulatedCampaign(design, hidden, margins, force, acceleration)
 
 
@@ -162,7 +162,7 @@ def quick_campaign(
     hidden = tuple(
         resize_effect(draw_effect(name, scales, rng), size) for name in effects
     )
-    force, acceleration = _with_noise(design, *simulate_records(design, hidden))
+    force, acceleration = noisy(design, *simulate_records(design, hidden))
     return SimulatedCampaign(design, hidden, (), force, acceleration)
 
 
@@ -279,7 +279,7 @@ def _hide(
     return _sized(scale, largest, wanted)
 
 
-def _with_noise(
+def noisy(
     design: CampaignDesign, force: FloatArray, acceleration: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Add the white noise of the sensors."""

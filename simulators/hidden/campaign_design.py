@@ -213,7 +213,7 @@ def _conditions(
             preload_ratio=ratio,
             order=order,
             progress=order / last,
-            pulse=_pulse(level, rng),
+            pulse=pulse_of(level, rng),
             force_factor=1 + scatter * float(rng.standard_normal()),
             joint_factor=1 + scatter * float(rng.standard_normal()),
             phase=float(rng.uniform(0, 2 * np.pi)),
@@ -222,7 +222,7 @@ def _conditions(
     )
 
 
-def _pulse(level: float, rng: np.random.Generator) -> Pulse:
+def pulse_of(level: float, rng: np.random.Generator) -> Pulse:
     """Draw a hit near the end of the pre-trigger, within 10 % of its level."""
     return Pulse(
         start=(PRETRIGGER + rng.uniform(-2, 2)) / SAMPLE_RATE,

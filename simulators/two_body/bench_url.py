@@ -8,21 +8,24 @@ from urllib.parse import parse_qsl, urlsplit
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.two_body.bench import TwoBodyBench
+from jointbench.simulators.two_body.bolted_blocks import BoltedBlocks
 from jointbench.simulators.two_body.campaign_bench import CampaignBench
 
-Specimen = type[TwoBodyBench] | type[CampaignBench]
+Specimen = type[TwoBodyBench] | type[CampaignBench] | type[BoltedBlocks]
 SPECIMENS: dict[str, Specimen] = {
     "two-body": TwoBodyBench,
     "two-body-campaign": CampaignBench,
+    "bolted-blocks": BoltedBlocks,
 }
 
 
-def specimen_from_url(url: str) -> TwoBodyBench | CampaignBench:
+def specimen_from_url(url: str) -> TwoBodyBench | CampaignBench | BoltedBlocks:
     """Return the simulated bench of a URL, of any kind.
 
     Args:
-        url: ``sim:two-body`` with any attribute of `TwoBodyBench` as a query, or
-            ``sim:two-body-campaign`` with any of `CampaignBench`.
+        url: ``sim:two-body`` with any attribute of `TwoBodyBench` as a query,
+            ``sim:two-body-campaign`` with any of `CampaignBench`, or
+            ``sim:bolted-blocks`` with any of `BoltedBlocks`.
 
     Returns:
         The bench; nothing is simulated before its samples are requested.
@@ -36,7 +39,7 @@ def specimen_from_url(url: str) -> TwoBodyBench | CampaignBench:
         raise UsageError(f"{url!r} is no simulated source; type sim:two-body?seed=1")
     specimen = SPECIMENS.get(parts.path)
     if specimen is None:
-        known = " and ".join(f"sim:{name}" for name in SPECIMENS)
+        known = ", ".join(f"sim:{name}" for name in SPECIMENS)
         raise UsageError(
             f"unknown specimen {parts.path!r} in {url!r}; there are {known}"
         )

@@ -6,9 +6,11 @@ from typing import Annotated
 
 import typer
 
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.commands.shared_options.input_options import Preload, Sessions
 from jointbench.station.commands.shared_options.joint_options import (
     Cache,
+    ChainSurfaces,
     ContactSurfaces,
     GapSources,
     Model,
@@ -166,6 +168,7 @@ def gap_command(
             "with those that the explanations predict; 1 to 2 s more.",
         ),
     ] = False,
+    surface: ChainSurfaces = None,
     report: HtmlReport = None,
     json: Json = None,
     debug: Debug = False,
@@ -179,8 +182,24 @@ def gap_command(
     Examples:
         jointbench gap session.h5 --model bench.toml --report gap.html
         jointbench gap hits.h5 --model sheet.json
+        jointbench gap session.h5 --model bench.toml --surface a.csv --surface b.csv
+        jointbench gap surface.csv --report surface.html
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
+    if surface:
+        _refuse_with_surface(with_, effects, curves)
+        from jointbench.station.chain.run_chain import run_chain
+
+        run_chain(
+            sources,
+            surface,
+            model=model,
+            preload=preload,
+            without=without,
+            report=report,
+            json_target=json,
+        )
+        return
     from jointbench.station.commands.gap_command import run_gap
     from jointbench.station.gap.gap_options import names_in
 
@@ -194,6 +213,16 @@ def gap_command(
         report=report,
         json_target=json,
     )
+
+
+def _refuse_with_surface(
+    with_: str | None, effects: list[Path] | None, curves: bool
+) -> None:
+    if with_ or effects or curves:
+        raise UsageError(
+            "--with, --effects and --curves do not apply to a chain; leave them or "
+            "--surface out"
+        )
 
 
 def machine_command(

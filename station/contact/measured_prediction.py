@@ -98,7 +98,7 @@ def measured_prediction(
         BadData: a surface shows no wavelength, or has too few points.
     """
     fits = tuple(fit_lines([one]) for one in surfaces)
-    case = _case(surfaces, fits, joint)
+    case = measured_case(surfaces, fits, joint)
     loads = sorted(joint.preloads, key=lambda one: one.value)
     pressure = np.array([one.value for one in loads]) / joint.area
     scatter = np.array([one.sd / one.value for one in loads])
@@ -127,11 +127,18 @@ def measured_prediction(
     )
 
 
-def _case(
+def measured_case(
     surfaces: Sequence[Surface],
     fits: Sequence[BandLimitedFit],
     joint: MeasuredJoint,
 ) -> MeasuredCase:
+    """Return a joint of measured surfaces, as the laws of their spectra take it.
+
+    Args:
+        surfaces: of both sides, or one that stands for both.
+        fits: their band-limited surfaces.
+        joint: area and materials.
+    """
     spectra = [isotropic_spectrum(fit) for fit in fits]
     facts = [
         height_facts(surface, float(one.mean_wave()[0]))

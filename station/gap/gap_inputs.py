@@ -6,11 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from jointbench.acquisition.basics.errors import BadData, NoHitFound, UsageError
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
-from jointbench.acquisition.records.recordings import Recording
-from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
 from jointbench.analysis.gap.catalogue.catalogue import (
     ALL_REAL_JOINTS,
@@ -28,8 +26,6 @@ from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.intake.read_hit_campaign import HIT_SCHEMA
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
-from jointbench.signal.hits.find_hits import HitCriteria
-from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.contact_section import contact_sections
@@ -41,21 +37,22 @@ from jointbench.station.gap.measured_curves import (
     curves_of_recordings,
 )
 from jointbench.station.gap.record_campaign import read_record
+from jointbench.station.gap.session_hits import (
+    ANY_LEVEL,
+    judged_recordings,
+    with_preloads,
+)
 from jointbench.station.gap.structure_files import examine_structure, nominal_beside
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
-from jointbench.station.pipeline.chain import hits_stage
+from jointbench.station.gap.surface_gap import examine_surface, surface_remarks
+from jointbench.station.gap.surface_gap_section import surface_gap_sections
 from jointbench.station.pipeline.joint_stages import gap_of
-from jointbench.station.pipeline.judge_again import StoredHits, with_hits
-from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.screen.page_parts import Section
 from jointbench.station.sources.open_source import is_url
 from jointbench.station.sources.recorded_session import record_session_file
 
-ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
-"""Levels span 30x on purpose: none is weak but what lies far below the softest of them,
-and the trigger must reach that one."""
 _RESPONSE_UNITS = ("m", "m/s", "m/s^2")
 Progress = Callable[[str], None]
 
@@ -130,10 +127,7 @@ def examine(
     if any(path.suffix.lower() == ".mat" for path in paths):
         return _examine_record(paths, wanted, progress)
     if not is_session_name(paths[0]):
-        raise UsageError(
-            f"'{paths[0]}' is no campaign, session (.h5) or record (.mat); bring hits "
-            "in with `jointbench import` first"
-        )
+        return _examine_surface(paths, wanted, progress)
     if _schema(paths[0]) == HIT_SCHEMA:
         return _examine_hits(paths, wanted, progress)
     if _schema(paths[0]) != SESSION_SCHEMA:
@@ -230,6 +224,27 @@ def _examine_joint(
     return Examined(data.name, done.found, sections=contact_sections(done))
 
 
+def _examine_surface(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine heights, with a self-affine surface as base."""
+    _refuse_curves(wanted)
+    if wanted.extended or wanted.model is not None or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' is no campaign, session (.h5) or record (.mat): as a "
+            "surface it takes no model, preload or effects. Bring hits in with "
+            "`jointbench import` first"
+        )
+    done = examine_surface(paths, without=wanted.without, progress=progress)
+    title = ", ".join(path.stem for path in paths)
+    return Examined(
+        title,
+        done.found,
+        remarks=surface_remarks(done),
+        sections=surface_gap_sections(done),
+    )
+
+
 def _examine_campaign(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
@@ -309,9 +324,9 @@ def _examine_sessions(
     sessions.sort(key=lambda session: session.created)
     remarks: list[str] = []
     stored = [
-        pair for session in sessions for pair in _with_preloads(session, wanted.preload)
+        pair for session in sessions for pair in with_preloads(session, wanted.preload)
     ]
-    recordings = _judged(stored, remarks)
+    recordings = judged_recordings(stored, remarks)
     if not recordings:
         names = ", ".join(path.name for path in paths)
         raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
@@ -348,55 +363,3 @@ def _model(path: Path, wanted: GapRequest) -> BenchModel:
             "bench.toml"
         )
     return read_toml(wanted.model, BenchModel)
-
-
-def _with_preloads(
-    session: Session, preload: float | None
-) -> list[tuple[Recording, float | None]]:
-    """Return recordings in order of time, each with the preload it was made at [N]."""
-    of_session = session.joint.preload if session.joint is not None else None
-    found = []
-    for recording in sorted(session.recordings, key=lambda r: r.start_time):
-        own = recording.preload if recording.preload is not None else of_session
-        if own is not None and preload is not None and own != preload:
-            raise UsageError(
-                f"--preload is {preload:g} N, but recording {recording.name!r} was "
-                f"made at {own:g} N; leave --preload out"
-            )
-        found.append((recording, own if own is not None else preload))
-    return found
-
-
-def _judged(
-    stored: Sequence[tuple[Recording, float | None]], remarks: list[str]
-) -> list[Recording]:
-    """Return the recordings that hold hits; their level is that of all sessions."""
-    recordings = [recording for recording, _ in stored]
-    try:
-        found = hits_stage(
-            recordings, ANY_LEVEL, StoredHits(all_struck=False), StageRun()
-        )
-    except NoHitFound:
-        return []
-    remarks += [one.quiet for one in found if one.quiet]
-    remarks += [
-        f"recording {recording.name!r}: {hit.reason}"
-        for recording, one in zip(recordings, found, strict=True)
-        for hit in one.lowered
-    ]
-    # What was written of the session is not checked there: an impossible preload
-    # must reach the one check that names it, not the record's own.
-    return [
-        _at_preload(with_hits(recording, one), preload)
-        for (recording, preload), one in zip(stored, found, strict=True)
-        if one.hits
-    ]
-
-
-def _at_preload(recording: Recording, preload: float | None) -> Recording:
-    if preload is not None and not preload > 0:
-        raise BadData(
-            f"recording {recording.name!r} was made at a preload of {preload:g} N; it "
-            "must be above zero: correct it where the session was made"
-        )
-    return replace(recording, preload=preload)

@@ -85,7 +85,7 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
     values = _values(states, path.parent)
     if not values:
         raise BadData(f"{named(path)} holds no measured value; add kn = '6e7 N/m' ...")
-    facts = _facts(model.joint, model.bodies)
+    facts = joint_facts(model.joint, model.bodies)
     data = JointData(
         path.stem,
         facts,
@@ -170,7 +170,13 @@ def _covariance(
     return read_covariance(path.parent / model.covariance, n_values)
 
 
-def _facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:
+def joint_facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:
+    """Return the facts of a bolted joint.
+
+    Args:
+        joint: bolts and contact surface.
+        bodies: materials.
+    """
     cone = None
     if joint.head_diameter is not None and joint.clamped_length is not None:
         width = joint.head_diameter + joint.clamped_length * math.tan(CONE_ANGLE)

@@ -93,6 +93,9 @@ def _unknown(found: Diagnosis) -> str:
 
 def _mostly(found: Diagnosis) -> str:
     partial = found.partial
+    if partial is None and found.effects:
+        names = _names(found)
+        return f"{names[:1].upper()}{names[1:]} explains most of it, not all"
     if partial is None:
         return _unknown(found)
     where = place(partial.site)

@@ -20,6 +20,7 @@ from jointbench.analysis.lumped.lumped_model import (
     ResponseChannel,
 )
 from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.schemas.bolted_joint_table import BoltedLinkTable
 from jointbench.station.schemas.positive_quantities import Force, Mass, Pressure, Share
 from jointbench.station.schemas.record_model import RecordTable, with_mechanical_units
 
@@ -112,11 +113,12 @@ class GapTable(StrictTable):
 
 
 class BenchModel(StrictTable):
-    """A lumped bench: bodies and links by name, the contact of one link, a record."""
+    """A lumped bench: bodies and links by name, the joint at one link, a record."""
 
     bodies: dict[str, BodyTable] = Field(min_length=1)
     links: dict[str, LinkTable] = Field(min_length=1)
     contact: ContactTable | None = None
+    bolted_joint: BoltedLinkTable | None = None
     gap: GapTable = GapTable()
     record: RecordTable | None = None
 
@@ -143,10 +145,12 @@ class BenchModel(StrictTable):
         points = [point for body in self.bodies.values() for point in body.points]
         if len(set(points)) != len(points):
             raise ValueError(f"a hit point belongs to two bodies: {points}")
-        if self.contact is not None and self.contact.link not in self.links:
-            raise ValueError(
-                f"contact.link is {self.contact.link!r}; links are {list(self.links)}"
-            )
+        for name in ("contact", "bolted_joint"):
+            table = getattr(self, name)
+            if table is not None and table.link not in self.links:
+                raise ValueError(
+                    f"{name}.link is {table.link!r}; links are {list(self.links)}"
+                )
         return self
 
 

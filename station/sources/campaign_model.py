@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The bench model of a simulated campaign as a file: nominal values with 1-sigma."""
 
+from jointbench.simulators.bolted_faces.bolted_faces import FaceDesign
 from jointbench.simulators.hidden.campaign_design import NOMINAL_SIGMA, CampaignDesign
 
 HEAD = "# Two bodies, weighed, on a support and a joint known from their drawings."
@@ -57,3 +58,46 @@ def model_text(design: CampaignDesign) -> str:
         for name, value in design.nominal.items()
     }
     return TEMPLATE.format(**design.nominal, **sds, preload=design.preload_reference)
+
+
+BLOCKS = """
+# Marble on marble, ground: 55 GPa and 0.25 for either block. What the drawing states.
+[bolted_joint]
+link = "joint"
+bolts = 4
+diameter = "{diameter:g} mm"
+area = "{area:g} cm^2"
+nut_factor = 0.2
+nut_factor_sd = "15 %"
+torque_scatter = "4 %"
+reassembly = "20 %"
+head_diameter = "{head:g} mm"
+clamped_length = "{clamped:g} mm"
+bolt_radius = "{place:.4g} mm"
+rocking_radius = "{rocking:.4g} mm"
+modulus = "55 GPa"
+modulus_sd = "3 %"
+poisson = 0.25
+hardness = "1.5 GPa"
+"""
+
+
+def blocks_text(design: CampaignDesign, surfaces: FaceDesign) -> str:
+    """Write what an operator would know of two bolted blocks.
+
+    Args:
+        design: of the hits; its true values stay out.
+        surfaces: sizes; waviness and true nut factor stay out.
+
+    Returns:
+        TOML with a table [bolted_joint].
+    """
+    mm = 1e3
+    return model_text(design) + BLOCKS.format(
+        diameter=mm * surfaces.bolt_diameter,
+        area=1e4 * surfaces.side**2,
+        head=mm * surfaces.head_diameter,
+        clamped=2 * mm * surfaces.thickness,
+        place=mm * surfaces.bolt_place,
+        rocking=mm * surfaces.side / 12**0.5,
+    )

@@ -7,13 +7,17 @@ session that is recorded went the way that a session at the bench goes.
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.recordings import Channel
 from jointbench.acquisition.records.source import Run, Source
+
+if TYPE_CHECKING:
+    from jointbench.simulators.campaigns.joint_campaign import JointCampaign
 
 SCHEMES = ("sim",)
 
@@ -121,6 +125,10 @@ def open_runs(url: str) -> RunSequence:
         source = ChassisSource(bench, samples=bench.samples)
         stream = WholeStream(source, bench.truth.preload)
         return RunSequence(bench.name, bench.simulated, (stream,))
+    from jointbench.simulators.two_body.bolted_blocks import BoltedBlocks
+
+    if isinstance(bench, BoltedBlocks):
+        return blocks_sequence(bench.name, bench.simulate())
     from jointbench.simulators.campaigns.write_campaign import campaign_truth
     from jointbench.simulators.two_body.campaign_bench import campaign_runs
     from jointbench.station.sources.campaign_model import model_text
@@ -136,6 +144,29 @@ def open_runs(url: str) -> RunSequence:
         model_text(campaign.design),
         campaign_truth(campaign),
     )
+
+
+def blocks_sequence(name: str, made: "JointCampaign") -> RunSequence:
+    """Return the runs on two bolted blocks, their model and their truth.
+
+    Args:
+        name: URL of the bench.
+        made: what was simulated.
+    """
+    from jointbench.simulators.two_body.campaign_bench import campaign_runs
+    from jointbench.station.sources.campaign_model import blocks_text
+    from jointbench.station.sources.chassis_source import ChassisRun
+
+    campaign, stiffness = made.campaign, made.stiffness
+    truth = {
+        "effects": {one.name: dict(one.parameters) for one in campaign.effects},
+        "joint": [asdict(one) | {"factors": one.factors} for one in stiffness],
+    }
+    runs = tuple(
+        ChassisRun(run, samples=run.samples.shape[1]) for run in campaign_runs(campaign)
+    )
+    text = blocks_text(campaign.design, made.surfaces)
+    return RunSequence(name, True, runs, text, truth)
 
 
 def _require_scheme(url: str) -> None:

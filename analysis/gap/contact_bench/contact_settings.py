@@ -186,6 +186,18 @@ class ContactBenchSettings:
         "sums over single summits of eight surfaces depart by up to 2 % at the ends of "
         "the range from a law whose factor and exponent are fitted",
     )
+    range_points: int = numerical(
+        7, "points", "preloads at which the range of a law is tested"
+    )
+    surface_directions: int = numerical(
+        3,
+        "directions",
+        "principal directions of the uncertainty of a measured surface",
+        "two hold over 99 % of the scatter of ln k of the real surfaces",
+    )
+    least_surface_sd: float = numerical(
+        1e-3, "-", "sd of ln k below which such a direction is left out"
+    )
     law_reach: float = numerical(
         2.0,
         "sd",

@@ -8,12 +8,15 @@ normal one (Mindlin 1949), except where a law gives its own.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.spectral.summit_laws import (
+    LineMoments,
+    greenwood_williamson,
+)
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.preload_law import LawParameter
 
@@ -90,8 +93,7 @@ class AsperityPreloadLaw:
         name: of the law.
 
     Source:
-        Greenwood and Williamson 1966, Proc. R. Soc. A 295, 300; density, radius and
-        height of summits: McCool 1986, Wear 107, 37, eqs. (3)-(8).
+        `greenwood_williamson` of the laws of measured surfaces.
     """
 
     parameters: tuple[LawParameter, ...]
@@ -107,34 +109,19 @@ class AsperityPreloadLaw:
             p.value * np.exp(c)
             for p, c in zip(self.parameters, coordinates, strict=True)
         )
-        m0, m2, m4 = height**2, slope**2, curvature**2
-        bandwidth = m0 * m4 / m2**2
+        moments = LineMoments(
+            *(np.array([value**2]) for value in (height, slope, curvature))
+        )
+        bandwidth = float(moments.breadth[0])
         if bandwidth <= 1.5:
             raise BadData(
                 f"height, slope and curvature give a bandwidth of {bandwidth:.3g}; a "
                 "random surface has more than 1.5: check their units and wavelengths"
             )
-        radius = 0.375 * np.sqrt(np.pi / m4)
-        density = m4 / (6.0 * np.pi * np.sqrt(3.0) * m2)
-        summit = np.sqrt(m0 * (1.0 - 0.8968 / bandwidth))
-        # P = full F_3/2(t) and dP/d(approach) = 1.5 (full/summit) F_1/2(t).
-        full = 4.0 / 3.0 * modulus * density * self.area * np.sqrt(radius) * summit**1.5
-        log_k = np.log(full / summit) + _SUMMITS(log_preload - np.log(full))
+        pressure = np.exp(log_preload) / self.area
+        state = greenwood_williamson(moments, pressure, np.array([modulus]))
+        log_k = np.log(self.area * state.stiffness[0])
         return _with_tangential(log_k, self.poisson)
-
-
-def _summit_curve() -> CubicSpline:
-    """Return ln(1.5 F_1/2) over ln F_3/2 of Gaussian summits."""
-    gap = np.linspace(-3.0, 7.0, 201)
-    node, weight = np.polynomial.legendre.leggauss(200)
-    above = 5.0 * (node + 1.0)
-    density = np.exp(-0.5 * (gap[:, None] + above) ** 2) / np.sqrt(2.0 * np.pi)
-    load = density @ (5.0 * weight * above**1.5)
-    slope = 1.5 * density @ (5.0 * weight * np.sqrt(above))
-    return CubicSpline(np.log(load[::-1]), np.log(slope[::-1]))
-
-
-_SUMMITS = _summit_curve()
 
 
 @dataclass(frozen=True, slots=True)

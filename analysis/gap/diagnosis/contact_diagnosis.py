@@ -93,15 +93,20 @@ def diagnose_contact(
     final = outcome.bench
     if not isinstance(final, ContactBench):
         raise TypeError("the search must return a bench of the type it was given")
-    return _conclude(outcome, final)
+    return conclude_contact(outcome, final)
 
 
 def _silent(line: str) -> None:
     """Show no progress."""
 
 
-def _conclude(outcome: SearchOutcome, bench: ContactBench) -> ContactDiagnosis:
-    """Derive the diagnosis from the outcome of a search."""
+def conclude_contact(outcome: SearchOutcome, bench: ContactBench) -> ContactDiagnosis:
+    """Derive the diagnosis from the outcome of a search.
+
+    Args:
+        outcome: of the search.
+        bench: of its fits.
+    """
     verdict = contact_verdict(outcome, bench)
     finding, base = verdict.finding, outcome.base
     accepted = finding in (Finding.NAMED, Finding.AMBIGUOUS)

@@ -27,8 +27,9 @@ _REACH_WIDTHS, _REACH_LINES = 6.0, 12
 _CHANCE = 1e-6
 # A second mode is one where its pole is no further off than half-power widths.
 _LEASH = 1.0
-# One mode in its place must leave this many times the chi-squared that two leave; else
-# a second singular value above this share of the first makes it possible.
+# One mode in its place must leave this many times the chi-squared that two leave, and
+# the second singular value be above this share of the first. It is possible with the
+# latter, or where two modes explain the lines and leave less than noise would allow.
 _GAIN, _LEAST_SHARE = 2.0, 0.003
 # Relative sd of an FRF from hit to hit where it is not known: aim, a few per cent.
 _UNKNOWN_AIM = 0.02
@@ -234,7 +235,10 @@ def _doubled(
         left,
         left * factor,
         accepted=bool(gained and stays[: 2 * count].all() and better),
-        possible=bool(size[0, 1] > _LEAST_SHARE * size[0, 0]),
+        possible=bool(
+            size[0, 1] > _LEAST_SHARE * size[0, 0]
+            or (gain > limit and left < _EXPLAINED)
+        ),
         members=members,
         stayed=np.asarray(stays[2 * count :] & (left < _WELL)),
         replaced=gone,

@@ -10,8 +10,8 @@ GapSources = Annotated[
     list[str],
     typer.Argument(
         metavar="SOURCE",
-        help="Sessions or a campaign (.h5), record (.mat), model with data (.toml) "
-        "or URL of a simulator (sim:).",
+        help="Sessions or a campaign (.h5), record (.mat), model with data (.toml), "
+        "measured surface, or URL of a simulator (sim:).",
         show_default=False,
     ),
 ]
@@ -29,5 +29,14 @@ ContactSurfaces = Annotated[
         "--surface",
         metavar="PATH",
         help="Measured contact surface for the table [contact]; give one or both.",
+    ),
+]
+ChainSurfaces = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--surface",
+        metavar="PATH",
+        help="Measured contact surface of the joint: diagnose the whole chain; the "
+        "model needs a table [bolted_joint]. Give one or both.",
     ),
 ]

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: MIT
+"""Diagnosis of a measured surface: what a self-affine surface lacks to explain it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.records.surfaces import Surface
+from jointbench.analysis.gap.diagnosis.diagnose import estimates_of, evidence_of
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
+from jointbench.analysis.gap.model.check_records import Closest
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Estimate,
+    Finding,
+    Gap,
+    NamedEffect,
+    Ranked,
+)
+from jointbench.analysis.gap.model.effect import words_of
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.surface_bench.held_out_waves import (
+    HeldOutWaves,
+    hold_out_waves,
+)
+from jointbench.analysis.gap.surface_bench.surface_bench import (
+    SurfaceBench,
+    make_surface_bench,
+)
+from jointbench.analysis.gap.surface_bench.surface_rows import surface_rows
+from jointbench.analysis.gap.surface_bench.surface_search import search_surface
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
+from jointbench.analysis.gap.surface_bench.surface_summary import summary_word
+from jointbench.analysis.gap.surface_bench.surface_views import surface_views
+from jointbench.signal.fractal.verdict_records import SurfaceVerdict
+
+MORE_SURFACE = "measure a longer profile with a finer pitch at another place"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceDiagnosis:
+    """Result on a measured surface.
+
+    Attributes:
+        found: verdict and evidence.
+        before: bins of wavelength predicted from the others by the base.
+        after: the same with the effects; that of the base where none is named.
+        bench: of the fits.
+        base: fit of the base.
+        best: fit that is shown; the base unless effects are accepted.
+        level: explanations that cannot be distinguished, the best first.
+        summary: verdict word.
+    """
+
+    found: Diagnosis
+    before: HeldOutWaves
+    after: HeldOutWaves
+    bench: SurfaceBench
+    base: Fit
+    best: Fit
+    level: tuple[Fit, ...]
+    summary: SurfaceVerdict
+
+
+@one_thread()
+def diagnose_surface(
+    surfaces: Surface | Sequence[Surface],
+    *,
+    degree: int = 1,
+    without: frozenset[str] = frozenset(),
+    policy: Policy = STANDARD,
+    progress: Progress | None = None,
+) -> SurfaceDiagnosis:
+    """Find and name what a self-affine surface lacks to explain a measured one.
+
+    Args:
+        surfaces: a profile or map as read, or independent profiles of one surface and
+            one pitch.
+        degree: of the form that was removed before [-].
+        without: names of effects to leave out of the catalogue.
+        policy: thresholds of the verdict.
+        progress: receives one line for each step.
+
+    Raises:
+        UsageError: `without` holds an unknown name, lines shorter than 64 points, or
+            several maps.
+        SurfaceTooSmall: too few measured points.
+    """
+    given = [surfaces] if not isinstance(surfaces, Sequence) else list(surfaces)
+    rows = surface_rows(given, degree=degree)
+    bench = make_surface_bench(rows, without=without, policy=policy)
+    outcome = search_surface(bench, progress or _silent)
+    tolerance = 0.0
+    if not outcome.acceptance.passed:
+        for one in SURFACE.tolerances:
+            wider = make_surface_bench(
+                rows.tolerant(one), without=without, policy=policy
+            )
+            tried = search_surface(wider, progress or _silent)
+            if tried.acceptance.passed:
+                bench, outcome, tolerance = wider, tried, one
+                break
+    return _conclude(outcome, bench, tolerance)
+
+
+def _silent(line: str) -> None:
+    """Show no progress."""
+
+
+def _conclude(
+    outcome: SearchOutcome, bench: SurfaceBench, tolerance: float
+) -> SurfaceDiagnosis:
+    """Derive the diagnosis from the outcome of a search."""
+    verdict = surface_verdict(outcome, bench, tolerance)
+    finding, base = verdict.finding, outcome.base
+    accepted = finding in (Finding.NAMED, Finding.AMBIGUOUS, Finding.MOSTLY)
+    best = outcome.best if accepted else base
+    before = hold_out_waves(bench, base)
+    after = before if best is base else hold_out_waves(bench, best)
+    shown: Sequence[Fit] = ()
+    if accepted:
+        shown = outcome.level if finding is Finding.AMBIGUOUS else (best,)
+    found = Diagnosis(
+        verdict=finding,
+        effects=_effects(outcome, bench, shown),
+        candidates=_candidates(outcome, bench),
+        gap_before=_gap(bench, base, before),
+        gap_after=_gap(bench, best, after),
+        prior_deviations={
+            name: (float(b), float(a))
+            for name, b, a in zip(
+                bench.base_names,
+                base.prior_deviations,
+                best.prior_deviations,
+                strict=True,
+            )
+        },
+        base=base_estimates(bench, best),
+        noise={
+            "sigma_min": 1.0,
+            "sigma_max": 1.0,
+            "force_sigma_N": 0.0,
+            "scatter_gain": 0.0,
+            "scatter_joint": 0.0,
+        },
+        null_statistic=(
+            outcome.base_screening.largest,
+            outcome.base_screening.threshold,
+        ),
+        experiment=verdict.step,
+        reason=verdict.reason,
+        explanations=tuple(_labels(f) for f in outcome.level if accepted),
+        policy=bench.policy,
+        closest=_closest(outcome, bench, finding),
+    )
+    names = [c.effect.name for c in best.candidates]
+    return SurfaceDiagnosis(
+        found,
+        before,
+        after,
+        bench,
+        base,
+        best,
+        outcome.level,
+        summary_word(finding, names),
+    )
+
+
+def surface_verdict(
+    outcome: SearchOutcome, bench: SurfaceBench, tolerance: float = 0.0
+) -> DiagnosisVerdict:
+    """Return the verdict on a search on a surface.
+
+    Args:
+        outcome: of the search.
+        bench: of its fits.
+        tolerance: sd of ln density that the rows allow beyond chance [-].
+    """
+    acceptance, best = outcome.acceptance, outcome.best
+    if not acceptance.passed:
+        reason = f"no effect of the catalogue explains the surface: {acceptance.reason}"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, MORE_SURFACE, unexplained=True)
+    chi2 = f"chi2 {best.cost:.1f} for {bench.blocks.dof} rows"
+    if tolerance > 0:
+        return _mostly(outcome, f"{chi2}, {outcome.base.cost:.1f} without", tolerance)
+    if not best.candidates:
+        reason = f"a self-affine surface explains the heights: {chi2}"
+        step = "none required; a longer profile would show smaller effects"
+        return DiagnosisVerdict(Finding.NONE, reason, step)
+    if len(outcome.level) == 1:
+        reason = f"explains the surface: {chi2}, {outcome.base.cost:.1f} without it"
+        return DiagnosisVerdict(Finding.NAMED, reason, "no rival is near")
+    names = " or ".join(words_of(f.candidates) for f in outcome.level)
+    if len(outcome.level) > bench.policy.most_rivals:
+        reason = f"too many explanations fit equally well: {names}"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, _separate(outcome))
+    reason = f"{names}: the difference of their scores is not significant"
+    return DiagnosisVerdict(Finding.AMBIGUOUS, reason, _separate(outcome))
+
+
+def _mostly(outcome: SearchOutcome, chi2: str, tolerance: float) -> DiagnosisVerdict:
+    """Return the verdict on rows that are explained within a tolerance only."""
+    within = f"within {100 * tolerance:.0f} % of the spectrum, not to its noise: {chi2}"
+    if len(outcome.level) == 1 and outcome.best.candidates:
+        reason = f"explains the surface {within}"
+        return DiagnosisVerdict(Finding.MOSTLY, reason, MORE_SURFACE)
+    names = " or ".join(words_of(f.candidates) or "none" for f in outcome.level)
+    reason = f"{names} fit {within}; a name needs more"
+    return DiagnosisVerdict(Finding.UNKNOWN, reason, _separate(outcome))
+
+
+def _separate(outcome: SearchOutcome) -> str:
+    """Return the fixed advice on the explanations that fit alike."""
+    steps = []
+    effects = [c.effect for f in outcome.level for c in f.candidates]
+    for one in effects:
+        for other in effects:
+            step = one.separates.get(other.name)
+            if step is not None and step not in steps:
+                steps.append(step)
+    return "; or ".join(steps) or MORE_SURFACE
+
+
+def _chances(outcome: SearchOutcome, bench: SurfaceBench) -> dict[str, float]:
+    """Return the probability of each explanation among those that were fitted.
+
+    Source:
+        Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773, with the charges of the
+        score in place of the prior volumes.
+    """
+    near = min((score(bench, f) for f in outcome.ranked), default=0.0)
+    near += bench.policy.rival_score
+    kept = [f for f in outcome.ranked if f in outcome.level or score(bench, f) >= near]
+    best = [outcome.best] if outcome.best.candidates else []
+    fits = list(dict.fromkeys([outcome.base, *best, *kept]))
+    scores = np.array([score(bench, f) for f in fits])
+    weight = np.exp(-0.5 * (scores - scores.min()))
+    return {
+        words_of(f.candidates): float(w)
+        for f, w in zip(fits, weight / weight.sum(), strict=True)
+    }
+
+
+def _effects(
+    outcome: SearchOutcome, bench: SurfaceBench, fits: Sequence[Fit]
+) -> tuple[NamedEffect, ...]:
+    chance = _chances(outcome, bench) if fits else {}
+    return tuple(
+        NamedEffect(
+            c.effect.name,
+            str(c.site),
+            estimates_of(bench, f, k),
+            chance[words_of(f.candidates)],
+            evidence_of(outcome, bench, f),
+        )
+        for f in fits
+        for k, c in enumerate(f.candidates)
+    )
+
+
+def _closest(
+    outcome: SearchOutcome, bench: SurfaceBench, finding: Finding
+) -> Closest | None:
+    best = outcome.best
+    if finding is not Finding.UNKNOWN or not best.candidates:
+        return None
+    chance = _chances(outcome, bench)[words_of(best.candidates)]
+    return Closest(_labels(best), chance, evidence_of(outcome, bench, best))
+
+
+def _labels(fit: Fit) -> tuple[str, ...]:
+    return tuple(c.label for c in fit.candidates) or ("none",)
+
+
+def _gap(bench: SurfaceBench, fit: Fit, held: HeldOutWaves) -> Gap:
+    words = (
+        f"{held.omega.size} bins of wavelength in {SURFACE.folds} parts, each "
+        f"predicted from the others, {100 * held.share_inside:.0f} % within their "
+        "95 % interval; marks and shapes as fitted"
+    )
+    deviation = float(np.abs(fit.prior_deviations).max())
+    views = surface_views(bench.rows, fit.residual)
+    return Gap(held.gap, held.chi2_per_dof, deviation, views, words)
+
+
+def _candidates(outcome: SearchOutcome, bench: SurfaceBench) -> tuple[Ranked, ...]:
+    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
+    first = score(bench, rows[0])
+    return tuple(
+        Ranked(
+            _labels(f),
+            score(bench, f),
+            score(bench, f) - first,
+            f.cost / max(bench.blocks.dof, 1),
+            float(np.abs(f.prior_deviations).max()),
+        )
+        for f in rows
+    )
+
+
+def base_estimates(bench: SurfaceBench, fit: Fit) -> tuple[Estimate, ...]:
+    """Return H and the density at the pivot, with their standard deviations.
+
+    Args:
+        bench: of the fit.
+        fit: with or without effects.
+    """
+    sd = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    widened = float(np.sqrt(max(fit.chi2 / max(bench.blocks.dof, 1), 1.0)))
+    unit = bench.rows.sample.scale**2 * bench.rows.sample.pitch
+    level = unit * float(np.exp(bench.level + fit.base[0]))
+    hurst = float(SURFACE.hurst + fit.base[1])
+    return (
+        Estimate("hurst", hurst, float(sd[1] * widened), "-"),
+        Estimate("density_at_pivot", level, float(sd[0] * widened) * level, "m^3"),
+    )

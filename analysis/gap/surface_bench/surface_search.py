@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: MIT
+"""Search for what a self-affine surface lacks to explain a measured one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.judgement.amplitudes import at_the_end
+from jointbench.analysis.gap.judgement.naming import Acceptance
+from jointbench.analysis.gap.judgement.rivals import rivals
+from jointbench.analysis.gap.model.effect import (
+    PROBE_FAMILY,
+    Candidate,
+    labels_of,
+    may_join,
+)
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.candidate_starts import along
+from jointbench.analysis.gap.search.descent import cost_at, minimise
+from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
+from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.surface_bench.surface_bench import SurfaceBench
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
+
+_Judged = list[tuple[Fit, Acceptance]]
+
+
+def search_surface(bench: SurfaceBench, progress: Progress) -> SearchOutcome:
+    """Fit the base, and search for missing effects if it does not explain the rows.
+
+    Args:
+        bench: as made.
+        progress: receives one line for each step.
+    """
+    progress("self-affine surface")
+    base = fit_surface(bench, (), np.zeros(2))
+    tested = [*bench.candidates, *bench.probes]
+    screening = screen(bench, base, tested)
+    first = accept_surface(bench, base, base, screening)
+    if first.passed:
+        return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
+    rounds = _Rounds(bench, base, first, progress)
+    judged = rounds.grown(_ranked(bench, rounds.added(base, screening)))
+    fits = [fit for fit, _ in judged]
+    best, acceptance = judged[0] if judged else (base, first)
+    near = [f for f, one in judged if one.passed]
+    return SearchOutcome(
+        bench=bench,
+        base=base,
+        base_acceptance=first,
+        base_screening=screening,
+        best=best,
+        acceptance=acceptance,
+        ranked=tuple(sorted(fits, key=lambda f: score(bench, f))),
+        level=tuple(rivals(bench, near)) if acceptance.passed else (best,),
+    )
+
+
+def fit_surface(
+    bench: SurfaceBench, candidates: Sequence[Candidate], start: FloatArray
+) -> Fit:
+    """Fit base and effects from one start.
+
+    Args:
+        bench: rows and catalogue.
+        candidates: effects.
+        start: coordinates.
+    """
+    problem = make_problem(bench, candidates)
+    return minimise(problem, start, FULL, iterations=SURFACE.descent_steps)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rounds:
+    """Rounds of one more effect each.
+
+    Attributes:
+        bench: rows and catalogue.
+        base: fit without effects.
+        first: its acceptance.
+        progress: receives one line for each fit.
+    """
+
+    bench: SurfaceBench
+    base: Fit
+    first: Acceptance
+    progress: Progress
+
+    def grown(self, fits: list[Fit]) -> _Judged:
+        """Judge fits, and add effects as long as none explains the rows."""
+        judged = self._judged(fits)
+        for _ in range(1, SURFACE.most_effects):
+            if not judged or judged[0][1].passed or not judged[0][1].unexplained:
+                break
+            more: list[Fit] = []
+            for fit, one in judged[: SURFACE.first_effects]:
+                if one.left is not None and one.unexplained:
+                    more += self.added(fit, one.left)
+            kept = [f for f in more if self._worth(f, judged)]
+            if not kept:
+                break
+            judged = self._judged(_ranked(self.bench, [*kept, *[f for f, _ in judged]]))
+        return judged
+
+    def _worth(self, fit: Fit, judged: _Judged) -> bool:
+        """Return whether a further effect gains what a name needs."""
+        own = labels_of(fit.candidates)
+        inner = [f for f, _ in judged if labels_of(f.candidates) < own]
+        least = min((score(self.bench, f) for f in inner), default=np.inf)
+        return score(self.bench, fit) < least - self.bench.policy.rival_score
+
+    def added(self, fit: Fit, screening: Screening) -> list[Fit]:
+        """Return fits with one more effect each."""
+        found = []
+        for candidate in self.bench.candidates:
+            if may_join(candidate, fit.candidates) and _apart(candidate, fit):
+                self.progress(
+                    " + ".join(c.effect.name for c in (*fit.candidates, candidate))
+                )
+                found.append(fit_one_more(self.bench, fit, screening, candidate))
+        return found
+
+    def _judged(self, fits: list[Fit]) -> _Judged:
+        """Judge the best fits, accepted ones first."""
+        bench, found = self.bench, []
+        tested = [*bench.candidates, *bench.probes]
+        limit = score(bench, fits[0]) + bench.policy.rival_score if fits else 0.0
+        for number, fit in enumerate(fits):
+            if number >= SURFACE.close_fits and score(bench, fit) > limit:
+                break
+            rest = [c for c in tested if may_join(c, fit.candidates)]
+            left = screen(bench, fit, rest)
+            found.append((fit, accept_surface(bench, fit, self.base, left)))
+        return sorted(found, key=lambda pair: not pair[1].passed)
+
+
+def _apart(candidate: Candidate, fit: Fit) -> bool:
+    """Return whether no law of a fit has the candidate as a special case."""
+    name = candidate.effect.name
+    return not any(
+        name in c.effect.generalises or c.effect.name in candidate.effect.generalises
+        for c in fit.candidates
+    )
+
+
+def _ranked(bench: SurfaceBench, fits: Sequence[Fit]) -> list[Fit]:
+    """Return fits by score, the best of each set of effects."""
+    found: dict[frozenset[str], Fit] = {}
+    for fit in sorted(fits, key=lambda f: score(bench, f)):
+        found.setdefault(labels_of(fit.candidates), fit)
+    return list(found.values())
+
+
+def fit_one_more(
+    bench: SurfaceBench, fit: Fit, screening: Screening, candidate: Candidate
+) -> Fit:
+    """Fit one more effect from its directed test and from its grid of starts.
+
+    Args:
+        bench: rows and catalogue.
+        fit: that it is added to.
+        screening: directed tests of that fit.
+        candidate: the effect.
+    """
+    problem = make_problem(bench, (*fit.candidates, candidate))
+    starts = [along(problem, fit, d, FULL).x for d in screening.best(candidate, 1)]
+    for tail in _far_starts(candidate):
+        starts.append(np.concatenate([fit.x, tail]))
+        if candidate.effect.refit_nominal:
+            # What hides an effect in the base is the exponent.
+            smooth = starts[-1].copy()
+            smooth[1] = SURFACE.smooth_start - SURFACE.hurst
+            starts.append(smooth)
+    costs = [
+        cost_at(problem, np.clip(x, problem.lower, problem.upper), FULL) for x in starts
+    ]
+    order = np.argsort(costs)[: max(SURFACE.kept_starts, len(starts) // 3)]
+    fits = [
+        minimise(
+            problem,
+            starts[k],
+            FULL,
+            iterations=SURFACE.first_steps,
+            exact_slopes=False,
+        )
+        for k in order
+    ]
+    best = min(fits, key=lambda f: f.cost)
+    return fit_surface(bench, (*fit.candidates, candidate), best.x)
+
+
+def _far_starts(candidate: Candidate) -> list[FloatArray]:
+    """Return the grid of starts of a candidate at all its amplitudes."""
+    first, found = candidate.effect.parameters[0], []
+    amplitudes = [first.encode(a) for a in first.far]
+    for point in start_grid(candidate):
+        if first.starts:
+            found.append(np.array(point))
+        for amplitude in amplitudes:
+            found.append(np.array([amplitude, *point[1:]]))
+    return found
+
+
+def accept_surface(
+    bench: SurfaceBench, fit: Fit, base: Fit, left: Screening
+) -> Acceptance:
+    """Judge a fit by its cost, its directed tests, its priors and its size.
+
+    Args:
+        bench: of the fit.
+        fit: with or without effects.
+        base: fit without effects.
+        left: directed tests of the fit by other effects and by probes.
+    """
+    dof = max(bench.blocks.dof, 1)
+    chance = SURFACE.fit_chance if fit.candidates else SURFACE.null_chance
+    model = 0.0
+    if fit.candidates:
+        shares = [
+            SURFACE.model_error if own is None else own
+            for own in (c.effect.model_error for c in fit.candidates)
+        ]
+        model = max(shares) * max(base.cost - dof, 0.0)
+        model = min(model, SURFACE.most_error * dof)
+    limit = chi2_limit(chance, dof) + model
+    allowed = SURFACE.null_factor * left.threshold + model
+    worst = left.directions[0] if left.directions else None
+    reason = ""
+    if fit.cost > limit:
+        reason = (
+            f"chi2 of the rows is {fit.cost:.1f} with {dof} rows, the limit is "
+            f"{limit:.1f}"
+        )
+    elif worst is not None and worst.drop > allowed:
+        reason = _looks_like(worst.candidate, worst.drop)
+    elif np.abs(fit.prior_deviations).max() > SURFACE.prior_limit:
+        k = int(np.argmax(np.abs(fit.prior_deviations)))
+        reason = (
+            f"{bench.base_names[k]} is {abs(fit.prior_deviations[k]):.1f} sd from its "
+            "nominal value"
+        )
+    unexplained = bool(reason)
+    if fit.candidates and not reason:
+        distance = float(np.sqrt(max(base.cost - fit.cost, 0.0)))
+        if distance < SURFACE.amplitude_limit:
+            reason = f"the effect is only {distance:.1f} sd from zero"
+        reason = reason or at_the_end(fit, bench.policy)
+    return Acceptance(
+        passed=not reason,
+        reason=reason,
+        excess=fit.cost / dof - 1.0,
+        allowed=limit / dof - 1.0,
+        remaining=worst.drop if worst else None,
+        remaining_allowed=allowed,
+        unexplained=unexplained,
+        left=left,
+    )
+
+
+def _looks_like(candidate: Candidate, drop: float) -> str:
+    if candidate.effect.family != PROBE_FAMILY:
+        return f"a further effect would lower chi2 by {drop:.0f}"
+    shape = candidate.effect.name.replace("_", " ")
+    return f"the residual has the shape '{shape}', which would lower chi2 by {drop:.0f}"

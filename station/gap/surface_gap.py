@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""A measured surface as a source of `gap`: what self-affinity lacks to explain it."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import UnitError, UsageError
+from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.acquisition.records.surfaces import Surface
+from jointbench.analysis.gap.surface_bench.surface_diagnosis import (
+    SurfaceDiagnosis,
+    diagnose_surface,
+)
+
+
+def examine_surface(
+    paths: Sequence[Path],
+    *,
+    without: frozenset[str],
+    progress: Callable[[str], None],
+) -> SurfaceDiagnosis:
+    """Read and diagnose a surface.
+
+    Args:
+        paths: one profile or map, or profiles of one surface at different places.
+        without: names of effects to leave out of the catalogue.
+        progress: receives one line per step.
+
+    Raises:
+        BadData: a file cannot be read, or its heights do not suffice.
+        UsageError: several maps, or `without` holds an unknown name.
+    """
+    progress("reading the heights")
+    surfaces = [_read(path) for path in paths]
+    return diagnose_surface(surfaces, without=without, progress=progress)
+
+
+def _read(path: Path) -> Surface:
+    if not path.exists():
+        raise UsageError(f"'{path}' does not exist")
+    try:
+        return read_surface(path)
+    except UnitError as error:
+        raise UsageError(
+            f"{str(error).split(';')[0]}; write units above the columns, for example "
+            "x:mm,z:um, and try again"
+        ) from error
+
+
+def surface_remarks(done: SurfaceDiagnosis) -> tuple[str, ...]:
+    """Return what sums up a diagnosis, a line each.
+
+    Args:
+        done: the diagnosis.
+    """
+    hurst = done.found.base[0]
+    law = f"H = {hurst.value:.3f} ± {hurst.sd:.3f} of the self-affine base"
+    return (f"summary: {done.summary.value}; {law}",)

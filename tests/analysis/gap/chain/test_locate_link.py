@@ -1,0 +1,99 @@
+"""The link at which a chain disagrees, from readings of its links."""
+
+import numpy as np
+import pytest
+
+from jointbench.analysis.gap.chain.chain_diagnosis import diagnose_chain
+from jointbench.analysis.gap.chain.chain_records import (
+    ChainLink,
+    JointReading,
+    LinkTest,
+    StructureReading,
+    SurfaceReading,
+)
+from jointbench.analysis.gap.chain.joint_over_preload import BoltedStates
+from jointbench.analysis.gap.chain.locate_link import Chain, locate
+from jointbench.analysis.gap.contact_bench.joint_states import JointFacts
+from jointbench.analysis.gap.contact_bench.preload_law import LawParameter
+from jointbench.analysis.gap.contact_bench.preload_laws import PowerPreloadLaw
+from jointbench.analysis.gap.model.diagnosis_record import Finding
+
+PRELOAD = np.array([2e3, 4e3, 8e3, 16e3, 32e3, 64e3])
+FACTS = JointFacts(4, 0.008, 0.2, 0.15, 0.03, 0.2, 0.0064, 2.9e10, 0.25)
+GOOD = LinkTest(100.0, 100, passed=True)
+BAD = LinkTest(5000.0, 100, passed=False, reason="chi2/dof is 50")
+
+
+def law(stiffness: float = 1e10) -> PowerPreloadLaw:
+    """Return k = 1e10 N/m at 8 kN, linear in the preload."""
+    rows = (
+        LawParameter("stiffness", "N/m", stiffness, 0.1),
+        LawParameter("exponent", "-", 1.0, 0.02),
+    )
+    return PowerPreloadLaw(rows, 8e3, 0.25)
+
+
+def chain(
+    stiffness: np.ndarray,
+    *,
+    test: LinkTest = GOOD,
+    after: np.ndarray | None = None,
+    surface: SurfaceReading | None = None,
+) -> Chain:
+    """Return a chain whose structure gives these stiffnesses."""
+    scatter = np.array([0.02, -0.015, 0.01, -0.01, 0.015, -0.02])
+
+    def reading(values: np.ndarray, own: LinkTest) -> JointReading:
+        return JointReading(np.log(values) + scatter, np.eye(6) * 1e-4, own)
+
+    structure = StructureReading(
+        reading(stiffness, test), None if after is None else reading(after, GOOD)
+    )
+    states = BoltedStates("made", FACTS, PRELOAD, np.zeros(6, dtype=np.int64))
+    return Chain(surface or SurfaceReading(law(), GOOD), structure, states)
+
+
+RIGHT = 1e10 * PRELOAD / 8e3
+
+
+def test_a_chain_that_agrees_needs_no_discrepancy() -> None:
+    """All links pass without one."""
+    found = diagnose_chain(chain(RIGHT))
+    assert found.finding is Finding.NONE
+    assert found.links == ()
+
+
+def test_a_compliance_is_found_at_the_contact_law_and_named() -> None:
+    """Bodies of 5e-11 m/N cap the stiffness; the factor is that of the series."""
+    compliant = 1.0 / (1.0 / RIGHT + 5e-11)
+    found = diagnose_chain(chain(compliant))
+    assert found.links == (ChainLink.CONTACT,)
+    assert found.finding is Finding.NAMED
+    assert found.names == ("series_compliance@link:joint",)
+    assert found.several is not None
+    at = found.several.reference
+    (cause,) = found.several.causes
+    assert cause.low < compliant[at] / RIGHT[at] < cause.high
+    assert found.several.product / found.several.measured == pytest.approx(1, abs=0.3)
+
+
+def test_a_fault_of_the_structure_is_found_there() -> None:
+    """Only the structure fails; with its effect the joint is that of the law."""
+    location = locate(chain(0.5 * RIGHT**0.8, test=BAD, after=RIGHT))
+    assert [p.links for p in location.places] == [(ChainLink.STRUCTURE,)]
+
+
+def test_a_fault_of_the_surfaces_is_found_there() -> None:
+    """Surfaces fail on their own heights; without the fault the law is right."""
+    surface = SurfaceReading(law(4e11), BAD, law(), GOOD)
+    location = locate(chain(RIGHT, surface=surface))
+    assert [p.links for p in location.places] == [(ChainLink.SURFACE,)]
+
+
+def test_two_faults_are_found_at_two_links() -> None:
+    """No single discrepancy restores structure and contact law."""
+    compliant = 1.0 / (1.0 / RIGHT + 5e-11)
+    location = locate(chain(0.5 * RIGHT, test=BAD, after=compliant))
+    assert [p.links for p in location.places] == [
+        (ChainLink.CONTACT, ChainLink.STRUCTURE)
+    ]
