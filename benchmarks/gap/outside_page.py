@@ -33,10 +33,10 @@ pairs, acceptance criteria, and the verdict under model error.
 A wrong name is a verdict of `named`, or of `mostly` with a family that is not true of
 the effect. Ambiguous: two or more effects of the catalogue explain the records, and the
 verdict says that they cannot be distinguished; none of them is true. Right family:
-`mostly` with a true one. None: nothing was found. A delay and a low pass of all channels
-are rivals in the margins as well (a drift of the clock resembles them). Scatter of the
-joint from hit to hit, which can imitate a drift of it, is not, so that those margins are
-too large.
+`mostly` with a true one. None: nothing was found. A delay and a low pass of all
+channels are rivals in the margins as well (a drift of the clock resembles them).
+Scatter of the joint from hit to hit, which can imitate a drift of it, is not: those
+margins are too large.
 """
 
 
