@@ -17,6 +17,13 @@ from outcomes import wilson
 from jointbench.analysis.gap.model.policy import STANDARD
 
 Run = dict[str, Any]
+_LIMITS = (
+    "mostly_standard_errors",
+    "mostly_conditions",
+    "mostly_share",
+    "mostly_left",
+    "mostly_beside",
+)
 _INTRO = (
     "# Verdicts under model error\n\n"
     "Made by `benchmarks/gap/model_error.py` and `model_error_page.py`. The benches "
@@ -57,24 +64,19 @@ def named_with(run: Run, **limits: float) -> str:
     m = run["mostly"]
     if m is None:
         return ""
-    at = {
-        name: limits.get(name, float(getattr(STANDARD, name)))
-        for name in (
-            "mostly_standard_errors",
-            "mostly_conditions",
-            "mostly_share",
-            "mostly_left",
-        )
-    }
+    at = {name: limits.get(name, float(getattr(STANDARD, name))) for name in _LIMITS}
     clear = all(
         lead["standard_errors"] > at["mostly_standard_errors"]
         and lead["conditions"] >= at["mostly_conditions"]
         for lead in (m["lead"], *m["rivals"])
     )
-    left = m["left_of_explainable"]
-    near = left is None or left <= at["mostly_left"]
-    named = clear and near and m["share_explained"] >= at["mostly_share"]
-    return str(m["family"]) if named else ""
+    left, beside = m["left_of_explainable"], m.get("beside")
+    explained = m["share_explained"] if left is None else 1.0 - left
+    explained = max(m["share_explained"], explained)
+    near = left is not None and left <= at["mostly_left"]
+    shaped = beside is None or beside["share"] <= at["mostly_beside"]
+    named = clear and explained >= at["mostly_share"] and (near or shaped)
+    return str(m["family"]) if named and m["nonlinear"] else ""
 
 
 def effect_of(name: str, runs: Sequence[Run]) -> str:
@@ -189,12 +191,7 @@ def page(every: Sequence[Run]) -> str:
         "| limit | value | change |",
         "|---|---|---|",
     ]
-    for name in (
-        "mostly_standard_errors",
-        "mostly_conditions",
-        "mostly_share",
-        "mostly_left",
-    ):
+    for name in _LIMITS:
         value = getattr(STANDARD, name)
         lines.append(f"| {name} | {value:g} | {effect_of(name, runs)} |")
     wrong = [r for r in runs if word_of(r) == "wrong"]

@@ -33,9 +33,10 @@ pairs, acceptance criteria, and the verdict under model error.
 A wrong name is a verdict of `named`, or of `mostly` with a family that is not true of
 the effect. Ambiguous: two or more effects of the catalogue explain the records, and the
 verdict says that they cannot be distinguished; none of them is true. Right family:
-`mostly` with a true one. None: nothing was found. Margins are somewhat too large where
-the rival acts on all channels (a delay, beside a drift of the clock) or where scatter
-of the joint from hit to hit can imitate a drift of it: neither is among the rivals.
+`mostly` with a true one. None: nothing was found. A delay and a low pass of all
+channels are rivals in the margins as well (a drift of the clock resembles them).
+Scatter of the joint from hit to hit, which can imitate a drift of it, is not: those
+margins are too large.
 """
 
 

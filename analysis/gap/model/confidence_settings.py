@@ -11,18 +11,18 @@ class ConfidenceSettings:
     """Numbers of the logistic model; unit, purpose and basis are with each field."""
 
     intercept: float = numerical(
-        1.560,
+        0.753,
         "logit",
         "confidence without any further evidence",
-        "benchmarks/gap/calibrate.py on 15 forced answers (seeds 130000 to 130014), "
+        "benchmarks/gap/calibrate.py on 308 forced answers (seeds 210002 to 210368), "
         "with a prior of 0.3 +- 0.3 on each slope",
     )
     slopes: tuple[float, ...] = numerical(
-        (0.298, -0.342, -0.345, -0.57, -0.364, -0.329, 0.26, -0.3),
+        (0.786, -1.266, -0.856, -0.343, -0.367, -0.453, 0.332, -0.3),
         "logit/decade",
         "change of the logit by margin, excess, probe, left, scatter, deviation, "
         "amplitude, and by a second effect",
-        "benchmarks/gap/calibrate.py on 15 forced answers (seeds 130000 to 130014), "
+        "benchmarks/gap/calibrate.py on 308 forced answers (seeds 210002 to 210368), "
         "with a prior of 0.3 +- 0.3 on each slope",
     )
     margin_range: tuple[float, float] = numerical(

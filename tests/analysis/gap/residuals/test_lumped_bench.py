@@ -164,3 +164,17 @@ def test_the_time_gate_of_a_noisy_force_is_narrow(noise: float, most: int) -> No
     assert sigma == pytest.approx(noise, rel=0.05)
     outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
     assert np.mean(outside**2) < 1.05 * noise**2
+
+
+def test_a_joint_that_warms_up_does_not_scatter() -> None:
+    """Stiffness lost with the square of time, 0.3 % in all, bends but is a trend."""
+    warming = -0.003 * np.linspace(0.0, 1.0, len(made.CONDITIONS)) ** 2
+    bench, joint = make_bench(made.quiet_campaign()), np.eye(6)[3]
+    clean = [
+        bench.response(made.BASE + w * joint, [])[k] for k, w in enumerate(warming)
+    ]
+    records = np.stack(clean)
+    records += 0.02 * np.random.default_rng(3).standard_normal(records.shape)
+    mean = made.BASE + warming.mean() * joint
+    found = make_bench(made.quiet_campaign(records)).refine(mean, ())
+    assert found.noise.scatter.size[1] == 0.0
