@@ -7,7 +7,8 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.next_experiment.contact_series import TorqueSeries
 from jointbench.station.files.output_paths import write_text
-from jointbench.station.measure.plan import read_plan
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.schemas.plan_model import MeasureTable
 
 _HITS = re.compile(r"^\[hits\][^\n]*\n", re.MULTILINE)
 _TORQUES = re.compile(r"^torques\s*=\s*\[[^\]]*\][^\n]*\n", re.MULTILINE)
@@ -50,7 +51,7 @@ def write_plan(before: Path, series: TorqueSeries, target: Path) -> None:
     Raises:
         BadData: the plan of the first session cannot be read.
     """
-    read_plan(before)
+    read_toml(before, MeasureTable)
     text = plan_text(before.read_text(encoding="utf-8-sig"), series)
     write_text(target, text)
-    read_plan(target)
+    read_toml(target, MeasureTable)
