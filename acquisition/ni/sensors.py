@@ -64,25 +64,6 @@ class Sensor:
     sensitivity_sd: float | None = None
 
 
-def sensor_entry(sensor: Sensor) -> dict[str, object]:
-    """Return what the log of a session says of a sensor and its calibration."""
-    facts: dict[str, object] = {
-        "kind": "sensor",
-        "name": sensor.name,
-        "quantity": sensor.quantity.value,
-        "serial": sensor.serial,
-        "certificate": sensor.certificate,
-    }
-    if sensor.calibrated is not None:
-        facts |= {
-            "calibrated": sensor.calibrated.isoformat(),
-            "due": _due(sensor.calibrated, sensor.calibration_months).isoformat(),
-        }
-    if sensor.sensitivity_sd is not None:
-        facts["sensitivity_sd"] = sensor.sensitivity_sd
-    return facts
-
-
 def require_unique(sensors: Sequence[Sensor]) -> None:
     """Check that no name and no input of a table is used twice.
 
@@ -176,24 +157,3 @@ def excitation_current(sensor: Sensor, axis: Axis, offered: Sequence[float]) -> 
         f"{what}: iepe is {1e3 * stated:g} mA, the module offers {amounts}; state "
         "that, or leave iepe out"
     )
-
-
-def calibration_warning(sensor: Sensor, today: date) -> str | None:
-    """Return a warning on the calibration of a sensor, or None."""
-    if sensor.calibrated is None:
-        return f"sensor {sensor.name!r}: no calibration date is stated"
-    due = _due(sensor.calibrated, sensor.calibration_months)
-    if today <= due:
-        return None
-    return (
-        f"sensor {sensor.name!r} ({sensor.serial or 'no serial number'}): calibrated "
-        f"{sensor.calibrated.isoformat()}, due {due.isoformat()}; have it calibrated"
-    )
-
-
-def _due(calibrated: date, months_valid: int) -> date:
-    """Return the day until which a calibration holds."""
-    months = calibrated.month - 1 + months_valid
-    year, month = calibrated.year + months // 12, months % 12 + 1
-    # The 28th, which every month has.
-    return date(year, month, min(calibrated.day, 28))

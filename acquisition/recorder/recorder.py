@@ -19,7 +19,7 @@ from jointbench.acquisition.recorder.news import NewsBox
 from jointbench.acquisition.recorder.replies import Reply
 from jointbench.acquisition.recorder.requests import (
     Ask,
-    Change,
+    ChangeSetup,
     CreateFile,
     Log,
     Request,
@@ -178,7 +178,7 @@ class Recorder:
             stream.resume()
             self._paused = False
             return replies.Done()
-        if isinstance(request, Change):
+        if isinstance(request, ChangeSetup):
             self._note(stream.change(request.setup))
             self._paused = False
             return self._ready()

@@ -39,7 +39,7 @@ from jointbench.acquisition.recorder.replies import (
 )
 from jointbench.acquisition.recorder.requests import (
     Ask,
-    Change,
+    ChangeSetup,
     CreateFile,
     Log,
     Request,
@@ -171,7 +171,7 @@ class RecorderProcess:
         Raises:
             InstrumentError: the device refuses, or does not answer.
         """
-        self._send(Change(setup))
+        self._send(ChangeSetup(setup))
         ready = self._reply()
         assert isinstance(ready, Ready)
         self.setup, self.sample_rate, self.complete = setup, ready.sample_rate, False

@@ -77,7 +77,7 @@ class TriggerBy:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ChangeSetup:
     """Stream something else into the same file; the reply is `Ready`.
 
     Attributes:
@@ -98,4 +98,4 @@ class Stop:
     interrupted: bool
 
 
-Request = Ask | CreateFile | Log | TriggerBy | Change | Stop
+Request = Ask | CreateFile | Log | TriggerBy | ChangeSetup | Stop

@@ -378,8 +378,7 @@ def next_command(
 
     Examples:
         jointbench next joint.toml --plan plates.toml --out next.toml
-        jointbench measure next.toml --out session-2.h5
-        jointbench gap joint.toml joint-2.toml
+        jointbench next joint.toml joint-2.toml
     """
     from jointbench.station.gap.next_session import run_next
 

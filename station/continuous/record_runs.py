@@ -11,7 +11,10 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import JointbenchError, UsageError
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
-from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
+from jointbench.acquisition.ni.sensor_calibration import (
+    calibration_warning,
+)
+from jointbench.acquisition.ni.sensors import table_channels
 from jointbench.acquisition.ni.stream import Block, Counters, StreamGap, StreamSettings
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.acquisition.recorder.requests import Setup

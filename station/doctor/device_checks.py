@@ -8,10 +8,12 @@ from jointbench.acquisition.basics.errors import JointbenchError, UsageError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.driver_answers import Module
 from jointbench.acquisition.ni.module_limits import require_capable
+from jointbench.acquisition.ni.sensor_calibration import (
+    calibration_warning,
+)
 from jointbench.acquisition.ni.sensors import (
     Axis,
     Sensor,
-    calibration_warning,
     channel_name,
 )
 from jointbench.acquisition.records.recordings import Quantity

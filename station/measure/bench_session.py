@@ -18,9 +18,11 @@ from jointbench.acquisition.basics.errors import (
 )
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
-from jointbench.acquisition.ni.sensors import (
+from jointbench.acquisition.ni.sensor_calibration import (
     calibration_warning,
     sensor_entry,
+)
+from jointbench.acquisition.ni.sensors import (
     table_channels,
 )
 from jointbench.acquisition.ni.stream import Counters, StreamSettings

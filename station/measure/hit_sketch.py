@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.recordings import Channel, Quantity
 from jointbench.signal.frf.frf import Frf
 from jointbench.station.measure.running_average import mean_coherence
-from jointbench.station.measure.stored_cut import Cut
+from jointbench.station.measure.stored_cut import HitCut
 from jointbench.station.session_events.view_events import HitAveraged
 
 _STEPS = 128  # of an FRF over its band
@@ -22,7 +22,7 @@ _BEFORE = 1e-3  # [s] of it before the trigger
 def hit_averaged(
     hit: int,
     counts: tuple[int, int],
-    cut: Cut,
+    cut: HitCut,
     frf: Frf | None,
     *,
     channels: Sequence[Channel],

@@ -21,7 +21,7 @@ from jointbench.station.measure.running_average import (
 )
 from jointbench.station.measure.session_log import run_begun
 from jointbench.station.measure.session_record import Record
-from jointbench.station.measure.stored_cut import Cut
+from jointbench.station.measure.stored_cut import HitCut
 from jointbench.station.measure.trial_hits import Trials
 from jointbench.station.measure.trigger import TriggerWatch
 from jointbench.station.session_events.command_queue import CommandRefused
@@ -215,7 +215,7 @@ class Points:
         last = self._ledger.last
         self._go_on(None if last is None else last.cut)
 
-    def _go_on(self, cut: Cut | None) -> None:
+    def _go_on(self, cut: HitCut | None) -> None:
         """Show the last hit, if any, and ask for the next or go to the next point."""
         hits, condition = self._bench.plan.hits, self._route.condition
         good = self._ledger.good(condition.number)
@@ -239,7 +239,7 @@ class Points:
         else:
             self._asker.ask()
 
-    def _show(self, cut: Cut, frf: Frf | None, count: int) -> None:
+    def _show(self, cut: HitCut, frf: Frf | None, count: int) -> None:
         bench = self._bench
         bench.desk.write(
             hit_averaged(

@@ -25,7 +25,7 @@ from jointbench.station.measure.running_sums import (
     KeptSpectra,
     RunningSums,
 )
-from jointbench.station.measure.stored_cut import Cut
+from jointbench.station.measure.stored_cut import HitCut
 
 _ELSEWHERE = 0.5  # a slender point is struck more softly than the others
 _ENOUGH = 3  # hits from which a single outlier can be recognised
@@ -40,7 +40,7 @@ class Accepted:
         hit: as judged.
     """
 
-    cut: Cut
+    cut: HitCut
     hit: Hit
 
 
@@ -79,11 +79,11 @@ class GrowingAverage:
         """
         self._channels, self._rate = tuple(channels), sample_rate
         self._length = 0
-        self._windows: dict[Cut, HammerWindow] = {}
+        self._windows: dict[HitCut, HammerWindow] = {}
         self._sums: RunningSums | None = None
-        self._summed: dict[Cut, Accepted] = {}
+        self._summed: dict[HitCut, Accepted] = {}
         self._spectra = KeptSpectra(kept)
-        self._last: tuple[tuple[Cut, ...], Frf | None] = ((), None)
+        self._last: tuple[tuple[HitCut, ...], Frf | None] = ((), None)
 
     def frf(self, accepted: Sequence[Accepted]) -> Frf | None:
         """Return the FRF of hits, None where they give none."""

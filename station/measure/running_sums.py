@@ -17,7 +17,7 @@ from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.frf import KIND_OF_RESPONSE, Frf
 from jointbench.signal.hits.hit_spectra import HitSpectra
 from jointbench.signal.hits.windows import HammerWindow
-from jointbench.station.measure.stored_cut import Cut
+from jointbench.station.measure.stored_cut import HitCut
 
 MOST_KEPT = 2**25
 """Size of the spectra that are kept [bytes]: 50 hits of four channels and half a second
@@ -108,10 +108,10 @@ class KeptSpectra:
     """
 
     most: int = MOST_KEPT
-    _kept: OrderedDict[Cut, HitSpectra] = field(default_factory=OrderedDict)
+    _kept: OrderedDict[HitCut, HitSpectra] = field(default_factory=OrderedDict)
     _size: int = 0
 
-    def get(self, cut: Cut, transform: Callable[[], HitSpectra]) -> HitSpectra:
+    def get(self, cut: HitCut, transform: Callable[[], HitSpectra]) -> HitSpectra:
         """Return the spectra of a hit.
 
         Args:
@@ -127,7 +127,7 @@ class KeptSpectra:
             self._size -= _size(self._kept.popitem(last=False)[1])
         return found
 
-    def drop(self, cut: Cut) -> None:
+    def drop(self, cut: HitCut) -> None:
         """Forget a hit."""
         found = self._kept.pop(cut, None)
         self._size -= 0 if found is None else _size(found)

@@ -8,7 +8,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 
 
-class Cut(Protocol):
+class HitCut(Protocol):
     """The samples around one trigger, in memory or in the file."""
 
     @property

@@ -184,7 +184,7 @@ class SurfaceBenchSettings:
         5.0, "waves", "waves on a line below which marks are not said to repeat"
     )
     mark_trials: int = numerical(
-        9, "trials", "wavelengths tried in each stage of the search for marks"
+        9, "trials", "wavelengths tried in each step of the search for marks"
     )
     teeth_gain: float = numerical(
         0.01, "-", "least share of the power by which more teeth must explain more"

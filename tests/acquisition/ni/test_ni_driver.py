@@ -15,10 +15,12 @@ import pytest
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.driver_answers import ConnectionLost, Overrun
+from jointbench.acquisition.ni.sensor_calibration import (
+    calibration_warning,
+)
 from jointbench.acquisition.ni.sensors import (
     Axis,
     Sensor,
-    calibration_warning,
     require_table,
     table_channels,
 )

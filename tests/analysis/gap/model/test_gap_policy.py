@@ -42,6 +42,7 @@ NO_SETTINGS = {
     "SLIDER_ROWS": "the same",
     "CURVE_ROWS": "the same",
     "FLOOR": "guard against a division by zero",
+    "_LEAST": "guard against the logarithm of zero",
     "ENDLESS": "mark of a surface without roll-off",
     "_FOURTH": "cumulant of second differences, exact",
     "_THIRD": "the same",
