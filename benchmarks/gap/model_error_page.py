@@ -74,6 +74,7 @@ def named_with(run: Run, **limits: float) -> str:
     explained = m["share_explained"] if left is None else 1.0 - left
     explained = max(m["share_explained"], explained)
     near = left is not None and left <= at["mostly_left"]
+    near = near and m["share_explained"] >= at["mostly_share"]
     shaped = beside is None or beside["share"] <= at["mostly_beside"]
     named = clear and explained >= at["mostly_share"] and (near or shaped)
     return str(m["family"]) if named and m["nonlinear"] else ""

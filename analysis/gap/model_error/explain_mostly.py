@@ -106,7 +106,8 @@ def _shape_doubt(found: PartialExplanation, policy: Policy) -> str:
     A law that leaves little is near enough, whatever shape that has.
     """
     beside, left = found.beside, found.left_of_explainable
-    if beside is None or (left is not None and left <= policy.mostly_left):
+    near = left is not None and left <= policy.mostly_left
+    if beside is None or (near and found.share >= policy.mostly_share):
         return ""
     if beside.share <= policy.mostly_beside:
         return ""
