@@ -66,6 +66,9 @@ def recording(
 def stored(path: Path) -> int:
     """Return how many samples a recording has by now."""
     with open_guarded(path) as file:
+        # The recorder's client holds the file open: HDF5 would show what it last read.
+        for name in ("samples", "blocks", "log"):
+            file[name].refresh()
         return read_live(file).samples
 
 
