@@ -31,14 +31,13 @@ from jointbench.station.commands.file_commands import (
     recover_command,
     verify_command,
 )
+from jointbench.station.commands.gap_commands import gap_command, next_command
 from jointbench.station.commands.joint_commands import (
     agreement_command,
     design_command,
     export_joint_command,
-    gap_command,
     identify_command,
     machine_command,
-    next_command,
 )
 from jointbench.station.commands.profile_command import profile_command
 from jointbench.station.commands.recorded_data_commands import (

@@ -15,9 +15,9 @@ from jointbench.acquisition.records.recordings import Verdict
 from jointbench.acquisition.records.session import JointSetup
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
-from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.commands.record_command import run_record
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.gap.run_gap import run_gap
 from jointbench.station.main import app, exit_code
 from jointbench.station.pipeline.process_session import curves_at, process_session
 from jointbench.station.pipeline.stage_store import NoStore

@@ -19,9 +19,9 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnose import conclude
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Estimate, Gap
 from jointbench.analysis.gap.model.evidence_records import GapEvidence
-from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.record_campaign import RecordToExamine, read_record
+from jointbench.station.gap.run_gap import run_gap
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.record_units import StandIns
 

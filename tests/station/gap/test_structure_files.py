@@ -18,7 +18,7 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.analysis.gap.model.diagnosis_record import Finding
-from jointbench.station.commands.gap_command import run_gap
+from jointbench.station.gap.run_gap import run_gap
 from jointbench.station.gap.structure_files import examine_structure, nominal_beside
 
 

@@ -20,7 +20,7 @@ from jointbench.analysis.gap.response.curve_integration import (
 from jointbench.analysis.gap.response.curve_law import curve_law
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.simulators.campaigns.campaign_records import quick_campaign
-from jointbench.station.commands.gap_command import run_gap
+from jointbench.station.gap.run_gap import run_gap
 from jointbench.station.schemas.effects_file import read_effects, with_own
 
 PAGE = Path(__file__).parents[4] / "docs" / "adding-an-effect.md"

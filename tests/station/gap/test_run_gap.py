@@ -10,7 +10,7 @@ from short_campaigns import write_short
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.simulators.campaigns.campaign_records import quick_campaign
-from jointbench.station.commands.gap_command import run_gap
+from jointbench.station.gap.run_gap import run_gap
 
 KEYS = {
     "verdict",
