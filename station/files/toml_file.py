@@ -81,10 +81,18 @@ def read_toml(path: Path, model: type[_Model]) -> _Model:
 
 def first_problem(error: ValidationError, model: type[BaseModel]) -> str:
     """Return the first broken rule: key, value, rule, and how many more."""
-    problem = error.errors(include_url=False)[0]
+    problems = error.errors(include_url=False)
+    problem = problems[0]
     key = ".".join(str(part) for part in problem["loc"]) or "(top level)"
-    more = error.error_count() - 1
+    # A list with a broken entry is also reported as too short: one mistake, not two.
+    inside = {tuple(one["loc"][:-depth]) for one in problems for depth in (1, 2)}
+    more = sum(
+        not (one["type"] == "too_short" and one["loc"] in inside)
+        for one in problems[1:]
+    )
     also = f" (and {more} more)" if more else ""
+    if problem["type"] == "missing":  # its input is the table around it
+        return f"key {key!r} is missing; add it{also}"
     value = repr(problem["input"])
     shown = value if len(value) <= 60 else value[:57] + "..."
     rule = problem["msg"].removeprefix("Value error, ")

@@ -79,7 +79,7 @@ def open_chassis(url: str) -> Iterator[OpenChassis]:
         if not is_plates_url(url):
             raise UsageError(
                 f"source {url!r} is no chassis; type ni:, ni+grpc://host:31763 or "
-                "sim:plates?seed=1"
+                "sim:plates, sim:mass, sim:spindle or sim:shaker"
             )
         with (
             SimulatedChassis(chassis_from_url(url)) as server,

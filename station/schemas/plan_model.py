@@ -90,8 +90,15 @@ class PlanSensorTable(StrictTable):
         """Return the sensor in SI.
 
         Raises:
-            UnitError: a value has no unit, or a wrong one.
+            UnitError: a value has no unit, or a wrong one, or the range is not above
+                zero.
         """
+        largest = parse_value(self.range, self.quantity)
+        if largest <= 0.0:
+            raise UnitError(
+                f"range {self.range!r} of sensor {self.name!r} must be above zero; "
+                "give the largest value that it measures, either sign"
+            )
         rows = self.axes or (
             AxisTable(
                 physical=self.physical or "",
@@ -112,7 +119,7 @@ class PlanSensorTable(StrictTable):
                 for row in rows
             ),
             unit=rows[0].sensitivity.rpartition("/")[2].strip(),
-            range=parse_value(self.range, self.quantity),
+            range=largest,
             excitation=self._excitation(),
             coupling=self.coupling or ("AC" if self.quantity in _FED else "DC"),
             serial=self.serial,

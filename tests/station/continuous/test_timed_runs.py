@@ -164,3 +164,20 @@ def test_channels_that_are_full_or_dead_are_named_once() -> None:
     assert again == []
     (dead,) = checks.dead()
     assert "'bed' stands still" in dead
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('range = "45 g"', 'range = "-45 g"', "range '-45 g' of sensor 'bed' must be"),
+        ('duration = "120 s"', "", r"'runs\.0\.duration' is missing; add it$"),
+        ('"120 s"', '"0 s"', r"value '0 s': Input should be greater than 0$"),
+    ],
+)
+def test_a_wrong_value_is_one_mistake(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    """The key is named, no table is printed, and nothing else is counted."""
+    path = plan_file(tmp_path, "operating.toml", **{old: new})
+    with pytest.raises(BadData, match=words):
+        read_record_plan(path)
