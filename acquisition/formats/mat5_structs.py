@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_size
 from jointbench.acquisition.formats.mat_file import require_sane_mat
 
 _HEADER, _TAG = 128, 8
@@ -71,6 +72,8 @@ def _bodies(path: Path) -> Iterator[tuple[bytes, str]]:
     """Yield the bytes of each variable, unpacked, and the order of its bytes."""
     with path.open("rb") as file:
         order = {b"IM": "<", b"MI": ">"}.get(file.read(_HEADER)[126:128])
+        if order is None and not file_size(path):
+            raise FormatError(f"{named(path)} is empty; export it again")
         if order is None:
             raise ValueError("its header names no order of bytes")
         while len(tag := file.read(_TAG)) == _TAG:

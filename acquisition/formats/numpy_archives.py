@@ -86,6 +86,7 @@ def read_numpy_archive(path: Path) -> dict[str, NDArray[Any]]:
 
 def _parsed(path: Path, name: str, data: bytes) -> NDArray[Any]:
     """Return the array of the bytes of a .npy file, its header compared with them."""
+    where = named(path) if name == path.name else f"{named(path)}: {shown(name)}"
     file = io.BytesIO(data)
     try:
         version = np.lib.format.read_magic(file)
@@ -98,18 +99,17 @@ def _parsed(path: Path, name: str, data: bytes) -> NDArray[Any]:
         held = len(data) - file.tell()
         if kind.hasobject:
             raise FormatError(
-                f"{named(path)}: {shown(name)} holds Python objects, which are never "
+                f"{where} holds Python objects, which are never "
                 "read because that runs code; save numbers"
             )
         if math.prod(shape) * kind.itemsize != held:
             raise FormatError(
-                f"{named(path)}: {shown(name)} claims the shape {shape}, {held} bytes "
+                f"{where} claims the shape {shape}, {held} bytes "
                 "are there; it is cut short: use another copy"
             )
         file.seek(0)
         return np.asarray(np.lib.format.read_array(file, allow_pickle=False))
     except _DAMAGE as error:
         raise FormatError(
-            f"{named(path)}: {shown(name)} is no whole array ({shown(error)}); use "
-            "another copy"
+            f"{where} is no whole array ({shown(error)}); use another copy"
         ) from error

@@ -79,10 +79,12 @@ def _refuse_rows_above(lines: Sequence[str], start: TableStart, path: Path) -> N
     for i in range(start.line):
         above = _numeric_layout(i, lines[i]) if is_row(lines[i]) else None
         if above and _same_layout(above, start):
+            commas = start.delimiter == ","
+            hint = ", or export decimal commas with semicolons between columns"
             raise FormatError(
                 f"{named(path)}: line {i + 1} is a row of {start.columns} columns, but "
                 f"below it {shown(lines[i + 1].strip())} is none; mend or remove line "
-                f"{i + 2}"
+                f"{i + 2}{hint if commas else ''}"
             )
 
 

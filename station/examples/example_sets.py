@@ -91,7 +91,7 @@ def example_set(name: str) -> ExampleSet:
     known = {one.name: one for one in EXAMPLES}
     if name in known:
         return known[name]
-    near = get_close_matches(name, known, n=1)
+    near = get_close_matches(str(name), known, n=1)
     hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
     raise UsageError(f"no example is called {name!r}; {hint}")
 

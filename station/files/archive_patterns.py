@@ -63,9 +63,10 @@ def _files(patterns: Sequence[str], *, results: bool) -> tuple[Path, ...]:
         here = [path for path in _named(pattern) if _is_meant(path, pattern, results)]
         if not here:
             what = "results (*.results.h5)" if results else "session (*.h5)"
+            remedy = "; 'jointbench reprocess' writes results" if results else ""
             raise UsageError(
                 f"{shown(pattern)} names no {what}; quote the pattern, "
-                "for example 'archive/**/*.h5'"
+                f"for example 'archive/**/*.h5'{remedy}"
             )
         for path in sorted(here, key=lambda one: (one.is_symlink(), one)):
             found.setdefault(path.resolve(), path)

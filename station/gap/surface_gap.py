@@ -42,8 +42,8 @@ def _read(path: Path) -> Surface:
         return read_surface(path)
     except UnitError as error:
         raise UsageError(
-            f"{str(error).split(';')[0]}; write units above the columns, for example "
-            "x:mm,z:um, and try again"
+            f"{str(error).split(';')[0]}; for a surface write units above the columns, "
+            "for example x:mm,z:um; hits go into a session by 'jointbench import'"
         ) from error
 
 

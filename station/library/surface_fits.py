@@ -118,7 +118,12 @@ def surface(
 def _only(path: str | Path, columns: str | None) -> Surface:
     found = open_measurement(path, columns=columns).surfaces
     if len(found) != 1:
-        names = ", ".join(one.name for one in found) or "none"
+        if not found:
+            raise UsageError(
+                f"'{path}' holds no surface; give a file of heights, or state its "
+                "columns, for example columns='x:um,z:um'"
+            )
+        names = ", ".join(one.name for one in found)
         raise UsageError(
             f"'{path}' holds the surfaces {names}; give one of "
             "jointbench.open(...).surfaces"

@@ -88,11 +88,15 @@ def recordings_of_arrays(
     only_roles(wanted, (_TIME, *QUANTITY_NAMES), "a recording of hits")
     times = [column for column in wanted if column.role == _TIME]
     channels = [column for column in wanted if column.role != _TIME]
-    if not channels or (not times and options.rate is None):
+    if channels and not times and options.rate is None:
+        raise UsageError(
+            f"--columns names no times of {named(path)}; give the rate, for example "
+            "--rate '10 kHz', or a column of times, 'time.t:s'"
+        )
+    if not channels:
         raise UsageError(
             f"--columns {options.columns!r} must name one time and some channels of "
-            f"{named(path)}, for example '{ARRAYS_EXAMPLE}'; without times give the "
-            "rate, --rate '10 kHz'"
+            f"{named(path)}, for example '{ARRAYS_EXAMPLE}'"
         )
     stamps = None if not times else _array(path, arrays, times[0])
     length = None if stamps is None else max(stamps.shape)

@@ -58,7 +58,7 @@ def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
     size = file_size(path)
     with path.open("rb") as opened:
         if opened.read(4) != b"TDSm":
-            raise FormatError(f"{named(path)} is no TDMS file")
+            raise FormatError(f"{named(path)} is no TDMS file; export it again")
     if size > _MOST_BYTES:
         raise HostileFile(f"{named(path)} has {size} bytes; cut it")
     _require_few_segments(path, size)

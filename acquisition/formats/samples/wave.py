@@ -111,7 +111,7 @@ def _require_whole(path: Path) -> None:
         head = file.read(_HEADER)
         order = _HEADS.get(head[:4])
         if order is None or head[8:12] != b"WAVE":
-            raise FormatError(f"{named(path)} is no WAV file")
+            raise FormatError(f"{named(path)} is no WAV file; export it again")
         at, count = _HEADER, 0
         while at + 8 <= size:
             count += 1

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jointbench as jb
-from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.errors import BadData, UsageError
 
 STEEL = {"modulus": "29 GPa", "hardness": "1.5 GPa"}
 
@@ -19,6 +19,33 @@ def test_what_names_no_file_is_refused() -> None:
             jb.open(wrong)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="no file"):
         jb.gap([])
+
+
+def test_names_and_files_of_another_kind_are_refused(tmp_path: Path) -> None:
+    """An example that is no name, hits as a surface, an archive without results."""
+    for wrong in (None, 3):
+        with pytest.raises(UsageError, match="no example is called"):
+            jb.example(wrong)  # type: ignore[arg-type]
+    hits = tmp_path / "hit.csv"
+    lines = [f"{k / 1000},{k % 7},{k % 5}\n" for k in range(64)]
+    hits.write_text("time [s],force [N],acceleration [m/s^2]\n" + "".join(lines))
+    with pytest.raises(UsageError, match="holds no surface; give a file of heights"):
+        jb.surface(hits)
+    with pytest.raises(UsageError, match="hits go into a session"):
+        jb.gap(hits)
+    with pytest.raises(UsageError, match="'jointbench reprocess' writes results"):
+        jb.archive(tmp_path)
+
+
+def test_files_that_say_too_little_name_the_remedy(tmp_path: Path) -> None:
+    """Empty files of every format, and samples without times."""
+    for name in ("a.mat", "a.wav", "a.npy", "a.csv"):
+        (tmp_path / name).touch()
+        with pytest.raises(BadData, match="export it again"):
+            jb.open(tmp_path / name, columns="time.t:s,force.F:N")
+    np.save(tmp_path / "b.npy", np.zeros((3, 2, 64)))
+    with pytest.raises(UsageError, match=r"names no times of .*give the rate"):
+        jb.open(tmp_path / "b.npy", columns="force:N,acceleration:g")
 
 
 def test_arguments_of_another_type_are_refused_in_one_line(tmp_path: Path) -> None:

@@ -158,7 +158,7 @@ def test_joints_are_identified_by_name(make_session: Maker, tmp_path: Path) -> N
     assert found["joint.stiffness"].unit == "N/m"
     with pytest.raises(UsageError, match=r"identified are .*joint\.stiffness"):
         _ = found["bolt.stiffness"]
-    with pytest.raises(UsageError, match="needs measured sessions"):
+    with pytest.raises(UsageError, match="needs sessions, hits or FRFs"):
         jb.identify(model)
 
 
