@@ -9,6 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.analysis.gap.catalogue.catalogue import check_names
 from jointbench.analysis.gap.chain.chain_diagnosis import (
     ChainDiagnosis,
     diagnose_chain,
@@ -84,7 +85,8 @@ def examine_chain(
         progress: receives one line per step.
 
     Raises:
-        UsageError: the model or its table [bolted_joint] is missing.
+        UsageError: the model or its table [bolted_joint] is missing, or `without`
+            holds an unknown name.
         BadData: a file cannot be used as it is.
     """
     if wanted.model is None:
@@ -94,6 +96,7 @@ def examine_chain(
         )
     model = read_toml(wanted.model, BenchModel)
     table = bolted_joint(model, wanted.model)
+    contact_names = _contact_names(wanted)
     progress("reading surfaces")
     heights = tuple(one for _, one in read_surfaces(list(surfaces), columns=None))
     progress("reading hits")
@@ -108,7 +111,6 @@ def examine_chain(
         progress=progress,
     )
     chain = Chain(surface, structure.reading, measured.states)
-    contact_names = wanted.without & frozenset(CONTACT_NAMES)
     found = diagnose_chain(chain, without=contact_names, progress=progress)
     stiffness = moved_stiffness(found)
     return ExaminedChain(
@@ -121,3 +123,15 @@ def examine_chain(
         moved_response(structure, stiffness, int(np.argmax(measured.states.preload))),
         measured.remarks,
     )
+
+
+def _contact_names(wanted: GapRequest) -> frozenset[str]:
+    """Return the effects of the contact law to leave out.
+
+    Raises:
+        UsageError: a name is neither in the catalogue of structures nor in that of
+            contact laws.
+    """
+    contact = wanted.without & frozenset(CONTACT_NAMES)
+    check_names(sorted(wanted.without - contact), wanted.entries)
+    return contact

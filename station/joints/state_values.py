@@ -82,9 +82,20 @@ def read_identified(path: Path) -> IdentifiedFile:
         return IdentifiedFile(found, _covariance(content, len(found)))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise FormatError(
-            f"{path}: no parameters as 'jointbench identify --json' writes them "
-            f"({error!r})"
+            f"{path}: {_fault(error)}; give the file that "
+            "'jointbench identify --json' wrote"
         ) from error
+
+
+def _fault(error: Exception) -> str:
+    """Return what a file lacks, in words."""
+    if isinstance(error, KeyError):
+        return f"no key {str(error.args[0])!r}"
+    if isinstance(error, json.JSONDecodeError):
+        return f"no JSON from line {error.lineno} on"
+    if isinstance(error, TypeError | AttributeError):
+        return "no table of identified parameters"
+    return f"no identified parameters: {error}"
 
 
 def state_values(

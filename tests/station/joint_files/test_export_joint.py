@@ -159,4 +159,7 @@ def test_parameters_of_another_model_are_refused(
     assert "holds no bed.normal_stiffness" in capsys.readouterr().err
     values.write_text("[1]", encoding="utf-8")
     assert run(monkeypatch, model, values, "--out", out) == EXIT_BAD_DATA
-    assert "no parameters as" in capsys.readouterr().err
+    assert "no table of identified parameters" in capsys.readouterr().err
+    values.write_text("{}", encoding="utf-8")
+    assert run(monkeypatch, model, values, "--out", out) == EXIT_BAD_DATA
+    assert "no key 'parameters'; give the file that" in capsys.readouterr().err
