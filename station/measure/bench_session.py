@@ -228,7 +228,7 @@ def _record(
                 )
             )
             for sensor in plan.sensors:
-                recorder.log(sensor_entry(sensor))
+                desk.log(sensor_entry(sensor))
             for words in warnings:
                 desk.warn(words)
             session.run()

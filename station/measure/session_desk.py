@@ -42,7 +42,11 @@ class SessionDesk:
 
     def write(self, event: Event) -> None:
         """Log an event."""
-        self.recorder.log(to_entry(event))
+        self.log(to_entry(event))
+
+    def log(self, entry: dict[str, object]) -> None:
+        """Log an entry, which every view reads back before it shows what follows."""
+        self.recorder.log(entry)
         self._due += 1
 
     def say(self, line: str) -> None:
