@@ -191,8 +191,11 @@ class Points:
         return f"{self._route.condition.name} is next"
 
     def restart(self) -> None:
-        """Begin a recording again, after a pause or at another point."""
-        self._trigger.break_off()
+        """Begin a recording again, after a pause or at another point.
+
+        The samples of a pause are stored, and the trigger was not fed with them.
+        """
+        self._trigger.break_off(self._bench.recorder.samples)
         if not self._route.over:
             self.begin()
 
