@@ -137,8 +137,8 @@ def next_command(
     simulated under every explanation that survives; the best one becomes a plan.
 
     Examples:
+        jointbench next joint-stiffness.toml
         jointbench next joint.toml --plan plates.toml --out next.toml
-        jointbench next joint.toml joint-2.toml
     """
     from jointbench.station.gap.next_session import run_next
 

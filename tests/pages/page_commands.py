@@ -22,10 +22,14 @@ REASONS = (
 GENERATED = ROOT / "docs" / "command-line.md"
 """The page of first examples of the help, which has no comments."""
 OF_COMMANDS = {
+    "agreement": "takes minutes",
     "demo": "takes minutes",
+    "design": "takes minutes",
+    "doctor": "needs hardware",
     "export-joint": "takes minutes",
     "measure": "needs hardware",
     "profile": "needs hardware",
+    "record": "takes minutes",
     "recover": "needs an interrupted recording",
     "simulate": "runs until Ctrl-C",
 }

@@ -131,8 +131,8 @@ def test_the_example_is_named_through_the_command_s_reader() -> None:
     assert len(done.sections[0].items) == 4
 
 
-def test_a_joint_file_is_given_alone(tmp_path: Path) -> None:
-    """Options of hits do not apply to it."""
+def test_options_of_hits_do_not_apply_to_a_joint_file(tmp_path: Path) -> None:
+    """It states its preloads itself; what to leave out is said."""
     path = _written(tmp_path, HEAD + STATES)
-    with pytest.raises(UsageError, match="give it alone"):
+    with pytest.raises(UsageError, match="leave --model and --preload out"):
         examine([str(path)], GapRequest(preload=1.0), progress=lambda line: None)
