@@ -132,7 +132,7 @@ def test_the_example_is_named_through_the_command_s_reader() -> None:
 
 
 def test_options_of_hits_do_not_apply_to_a_joint_file(tmp_path: Path) -> None:
-    """It states its preloads itself; what to leave out is said."""
+    """It states its preloads itself; the message names what to leave out."""
     path = _written(tmp_path, HEAD + STATES)
     with pytest.raises(UsageError, match="leave --model and --preload out"):
         examine([str(path)], GapRequest(preload=1.0), progress=lambda line: None)
