@@ -155,7 +155,7 @@ def test_mat_variables_are_channels_by_their_labels(tmp_path: Path) -> None:
     assert found.channels[0].point == "3"
     with pytest.raises(UnitError, match=r"'t' .*, 'F' .*, 'a1'"):
         read_mat_recordings(path, SampleOptions(None))
-    with pytest.raises(UsageError, match="one time"):
+    with pytest.raises(UsageError, match="names no times"):
         read_mat_recordings(path, SampleOptions("force.F:N"))
 
 
