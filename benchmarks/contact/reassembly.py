@@ -2,11 +2,11 @@
 """Count how often the next assembly lies in its interval, and changes that are seen.
 
     python benchmarks/contact/reassembly.py RUNS.jsonl --first 40000 --count 1000
-    python benchmarks/contact/reassembly.py RUNS.jsonl --page docs/joint-reassembly-numbers.md
+    python benchmarks/contact/reassembly.py RUNS.jsonl --page PAGE.md
 
 The joints are made by what the product does not assume: stiffness from a saturating law
 in series with the bodies, assemblies that scatter in several ways (log-normal; heavy
-tails; one in four on other spots; by an exponent that differs as well), nut factors from
+tails; one in four on other spots; by an exponent that differs too), nut factors from
 a gamma distribution for each tightening, measurement errors up to a third larger than
 stated. Nominal scatters are wrong by up to a factor of two.
 """
@@ -184,7 +184,7 @@ def page(runs: Sequence[Run]) -> str:
         "`--page docs/joint-reassembly-numbers.md`.",
         "",
         f"{len(runs)} simulated joints of 2 to 8 assemblies at 3 to 5 torques, seeds "
-        f"{min(r['seed'] for r in runs)} to {max(r['seed'] for r in runs)}. The makers "
+        f"{min(r['seed'] for r in runs)} to {max(r['seed'] for r in runs)}. The simulations "
         "share no law, no distribution and no nominal value with the product: see the "
         "head of the script. In brackets are 95 % intervals by Wilson's formula.",
         "",

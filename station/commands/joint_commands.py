@@ -304,7 +304,7 @@ def reassembly_command(
     level: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="VALUE",
+            metavar="QUANTITY",
             help="Torque or preload at which the next assembly is predicted, such as "
             "'30 N m'; may be repeated. Default: those measured.",
         ),

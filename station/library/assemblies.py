@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jointbench.analysis.gap.reassembly.changed_joint import Change, Reassembly
+from jointbench.analysis.gap.reassembly.changed_joint import JointChange, Reassembly
 from jointbench.station.library.argument_checks import require_lists
 from jointbench.station.library.measurements import paths_of
 from jointbench.station.library.result_view import ResultView, Shown
@@ -33,7 +33,7 @@ class ComparedAssemblies(Shown):
     @property
     def changed(self) -> bool:
         """Whether the latest assembly lies beyond the scatter of the joint."""
-        return self.result.change is Change.CHANGED
+        return self.result.change is JointChange.CHANGED
 
     def to_dict(self) -> dict[str, Any]:
         """Return the comparison as plain data, as ``reassembly --json`` writes it."""

@@ -7,7 +7,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     ContactQuantity,
 )
 from jointbench.analysis.gap.reassembly.changed_joint import (
-    Change,
+    JointChange,
     LatestAssembly,
     QuantityOverAssemblies,
     Reassembly,
@@ -32,21 +32,21 @@ def headline(found: Reassembly) -> str:
     head = f"{count} assemblies: "
     if not found.reassembled:
         head += "not opened before the latest states; "
-    if found.change is Change.CHANGED:
+    if found.change is JointChange.CHANGED:
         words = [
             f"{name} {_changed(one.latest)}"
             for name, one in found.quantities.items()
-            if one.latest.change is Change.CHANGED
+            if one.latest.change is JointChange.CHANGED
         ]
         return f"{head}the joint has changed: {', '.join(words)}"
-    if found.change is Change.SCATTER:
+    if found.change is JointChange.SCATTER:
         return f"{head}the latest values lie within the scatter of the joint"
     return f"{head}whether the joint has changed cannot be determined"
 
 
 def remedy(found: Reassembly) -> str:
     """Return what would decide, or nothing."""
-    if found.change is not Change.OPEN:
+    if found.change is not JointChange.OPEN:
         return ""
     return (
         "the scatter hides a change by a factor of 2; measure further assemblies or "

@@ -10,7 +10,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.analysis.gap.reassembly.changed_joint import (
-    Change,
+    JointChange,
     Reassembly,
     compare_assemblies,
 )
@@ -108,4 +108,4 @@ def run_reassembly(
 
         write_reassembly_report(outputs.report, joints[0].stem, found)
         screen.print(f"report: {outputs.report}", soft_wrap=True)
-    return found.change is not Change.CHANGED
+    return found.change is not JointChange.CHANGED

@@ -32,11 +32,10 @@ from jointbench.analysis.gap.reassembly.expected_values import (
 )
 from jointbench.analysis.gap.reassembly.reassembly_settings import REASSEMBLY
 
-
 DAMPINGS = QUANTITIES[len(STIFFNESSES) :]
 
 
-class Change(StrEnum):
+class JointChange(StrEnum):
     """Whether a joint has changed."""
 
     CHANGED = "changed"
@@ -58,7 +57,7 @@ class LatestAssembly:
             farther [-].
     """
 
-    change: Change
+    change: JointChange
     ratio: float
     interval: tuple[float, float]
     detectable: float
@@ -101,7 +100,7 @@ class Reassembly:
         quantities: by what was measured.
     """
 
-    change: Change
+    change: JointChange
     reassembled: bool
     by_torque: bool
     quantities: dict[ContactQuantity, QuantityOverAssemblies]
@@ -135,7 +134,7 @@ def compare_assemblies(
         for quantity, one in rows.items()
     }
     said = {one.latest.change for one in found.values()}
-    order = (Change.CHANGED, Change.SCATTER, Change.OPEN)
+    order = (JointChange.CHANGED, JointChange.SCATTER, JointChange.OPEN)
     change = next(c for c in order if c in said)
     by_torque = bool(np.isfinite(data.states.torque).all())
     return Reassembly(change, reassembled, by_torque, found)
@@ -187,7 +186,7 @@ def _latest(
         rows.level[~new],
         rows.assembly[~new],
     )
-    # Levels that the sessions before do not reach tell nothing of a change.
+    # Levels that the sessions before do not reach show nothing of a change.
     reach = REASSEMBLY.extrapolation if old.levels.size > 1 else 1.0
     margin = np.log(reach) + REASSEMBLY.same_level
     inside = (np.log(rows.level) > np.log(old.levels[0]) - margin) & (
@@ -195,7 +194,7 @@ def _latest(
     )
     new &= inside
     if not new.any():
-        return LatestAssembly(Change.OPEN, np.nan, (0.0, np.inf), np.inf, 1.0, 1.0)
+        return LatestAssembly(JointChange.OPEN, np.nan, (0.0, np.inf), np.inf, 1.0, 1.0)
     expected = expected_values(
         scatter_posterior(old, nominal),
         rows.level[new],
@@ -227,11 +226,11 @@ def _judged(expected: Expected, value: FloatArray, limit: float) -> LatestAssemb
     least = limit / REASSEMBLY.tests
     seen = spread * float(ndtri(REASSEMBLY.power) - ndtri(0.5 * least))
     if min(p_offset, p_shape) < least:
-        change = Change.CHANGED
+        change = JointChange.CHANGED
     elif seen > np.log(REASSEMBLY.widest):
-        change = Change.OPEN
+        change = JointChange.OPEN
     else:
-        change = Change.SCATTER
+        change = JointChange.SCATTER
     return LatestAssembly(
         change,
         float(np.exp(weight @ offset)),
