@@ -54,7 +54,8 @@ class AssemblyRows:
         """Different levels, rising, shape (n_levels,)."""
         ordered = np.sort(self.level)
         apart = np.diff(np.log(ordered)) > REASSEMBLY.same_level
-        return ordered[np.concatenate([[True], apart])]
+        levels: FloatArray = ordered[np.concatenate([[True], apart])]
+        return levels
 
 
 def assembly_rows(data: JointData) -> dict[ContactQuantity, AssemblyRows]:
