@@ -186,7 +186,8 @@ def page(runs: Sequence[Run]) -> str:
         f"{len(runs)} simulated joints of 2 to 8 assemblies at 3 to 5 torques, seeds "
         f"{min(r['seed'] for r in runs)} to {max(r['seed'] for r in runs)}. The "
         "simulations share no law, no distribution and no nominal value with the "
-        "product: see the head of the script. In brackets are 95 % intervals by Wilson's formula.",
+        "product: see the head of the script. In brackets are 95 % intervals by "
+        "Wilson's formula.",
         "",
         "## The next assembly lies in its 95 % interval",
         "Levels of one joint fall in or out together; the share of joints counts.",
