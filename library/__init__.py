@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from jointbench.station.library.archives import archive, process
+    from jointbench.station.library.assemblies import reassembly
     from jointbench.station.library.contact_laws import contact
     from jointbench.station.library.example_files import example
     from jointbench.station.library.frf_results import frf
@@ -47,6 +48,7 @@ _PLACES = {
     "modes": ("mode_results", "modes"),
     "open": ("measurements", "open_measurement"),
     "process": ("archives", "process"),
+    "reassembly": ("assemblies", "reassembly"),
     "record": ("measurements", "record"),
     "report": ("session_pages", "report"),
     "surface": ("surface_fits", "surface"),
@@ -63,6 +65,7 @@ __all__ = [
     "modes",
     "open",
     "process",
+    "reassembly",
     "record",
     "report",
     "surface",

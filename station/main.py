@@ -38,6 +38,7 @@ from jointbench.station.commands.joint_commands import (
     export_joint_command,
     identify_command,
     machine_command,
+    reassembly_command,
 )
 from jointbench.station.commands.profile_command import profile_command
 from jointbench.station.commands.recorded_data_commands import (
@@ -95,6 +96,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "machine": machine_command,
         "gap": gap_command,
         "next": next_command,
+        "reassembly": reassembly_command,
     },
     "Files": {
         "example": example_command,

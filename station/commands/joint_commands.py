@@ -290,3 +290,55 @@ def machine_command(
     from jointbench.station.machine.run_machine import run_any_machine
 
     run_any_machine(model, report=report, motion=motion, json_target=json, cache=cache)
+
+
+def reassembly_command(
+    joints: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="JOINT",
+            help="Joint over its preload (TOML) in several assemblies, and later "
+            "sessions of it.",
+        ),
+    ],
+    level: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Torque or preload at which the next assembly is predicted, such as "
+            "'30 N m'; may be repeated. Default: those measured.",
+        ),
+    ] = None,
+    unopened: Annotated[
+        bool,
+        typer.Option(
+            "--unopened",
+            help="The joint was not opened before the latest assembly was measured.",
+        ),
+    ] = False,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Compare the assemblies of a joint, and predict the next one.
+
+    How much stiffness and damping scatter when the joint is put together again; the
+    range in which the next assembly will lie; whether the latest has changed. Ends
+    with exit code 5 if it has.
+
+    Examples:
+        jointbench reassembly joint-stiffness.toml --report assemblies.html
+        jointbench reassembly first.toml later.toml --level '30 N m'
+    """
+    from jointbench.station.reassembly.run_reassembly import (
+        ReassemblyOutputs,
+        run_reassembly,
+    )
+
+    same = run_reassembly(
+        joints,
+        level=level or [],
+        opened=not unopened,
+        outputs=ReassemblyOutputs(report, json),
+    )
+    return 0 if same else EXIT_QUALITY

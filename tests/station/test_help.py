@@ -234,7 +234,11 @@ def test_each_shell_has_a_completion_script(shell: str) -> None:
     ("typed", "position", "expected"),
     [
         ("jointbench mo", "1", ["modal"]),
-        ("jointbench re", "1", ["record", "report", "reprocess", "recover"]),
+        (
+            "jointbench re",
+            "1",
+            ["record", "report", "reprocess", "reassembly", "recover"],
+        ),
         ("jointbench modal --ba", "2", ["--band"]),
     ],
 )
