@@ -4,6 +4,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -29,36 +30,40 @@ def serial(tasks, recipe):
     return (process_task(task, recipe) for task in tasks)
 
 
-@pytest.fixture
-def dask(tmp_path: Path) -> Iterator[tuple[str, Ends, Ends]]:
-    """Yield a scheduler's address, and what kills it and its only worker."""
-    pytest.importorskip("distributed")
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    reported = tmp_path / "scheduler.json"
-    begin = [sys.executable, "-m"]
-    local = ["--host", "127.0.0.1", "--port", "0"]
-    where = ["--scheduler-file", str(reported), "--no-dashboard"]
-    scheduler = subprocess.Popen(
-        [*begin, "distributed.cli.dask_scheduler", *local, *where],
-        **quiet,  # type: ignore[call-overload]
-    )
-    worker = subprocess.Popen(
-        [
-            *begin,
-            "distributed.cli.dask_worker",
-            "--nthreads",
-            "1",
-            "--no-nanny",
-            *where,
-        ],
-        **quiet,  # type: ignore[call-overload]
+@contextmanager
+def _started(name: str, *words: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Run a program of Dask until the block ends."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", f"distributed.cli.dask_{name}", *words],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
     try:
-        yield _address(reported), scheduler.kill, worker.kill
+        yield process
     finally:
-        for process in (worker, scheduler):
-            process.kill()
-            process.wait()
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture(scope="module")
+def scheduler(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[tuple[Path, Ends]]:
+    """Yield the file of a scheduler, which is slow to start, and what kills it."""
+    pytest.importorskip("distributed")
+    file = tmp_path_factory.mktemp("dask") / "scheduler.json"
+    local = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    with _started("scheduler", *local, "--scheduler-file", str(file)) as process:
+        yield file, process.kill
+
+
+@pytest.fixture
+def dask(scheduler: tuple[Path, Ends]) -> Iterator[tuple[str, Ends, Ends]]:
+    """Yield the scheduler's address, and what kills it and its only worker."""
+    file, kill = scheduler
+    alone = ("--nthreads", "1", "--no-nanny", "--no-dashboard")
+    with _started("worker", *alone, "--scheduler-file", str(file)) as worker:
+        yield _address(file), kill, worker.kill
 
 
 def _address(reported: Path) -> str:
@@ -87,7 +92,8 @@ def _run(folder: Path, backend) -> None:
     )
 
 
-@pytest.mark.parametrize("killed", ["scheduler", "worker"])
+# The scheduler last: both use the same one.
+@pytest.mark.parametrize("killed", ["worker", "scheduler"])
 def test_a_cluster_that_is_lost_midway_is_one_line_and_gone_on_with(
     make_session, tmp_path: Path, dask, monkeypatch, capfd, killed: str
 ) -> None:

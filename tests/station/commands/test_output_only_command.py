@@ -2,25 +2,40 @@
 """``jointbench modal --output-only`` as a user types it."""
 
 import json
-import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+import pytest
+from package_commands import run
 from scipy.signal import lfilter
 
 RATE = 1000.0
 
 
-def jointbench(*words: object) -> subprocess.CompletedProcess[str]:
-    """Run the command line in a process of its own."""
-    code = "from jointbench.station.main import run; run()"
-    return subprocess.run(
-        [sys.executable, "-c", code, *map(str, words)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+class Ended(NamedTuple):
+    """What a command left: its exit code and what it wrote."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+Command = Callable[..., Ended]
+
+
+@pytest.fixture
+def jointbench(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Command:
+    """Run the command line in this process, which has imported it already."""
+
+    def command(*words: object) -> Ended:
+        capsys.readouterr()
+        return Ended(run(monkeypatch, *words), *capsys.readouterr())
+
+    return command
 
 
 def shaken(path: Path, seconds: float, sine: float = 0.0) -> Path:
@@ -37,7 +52,9 @@ def shaken(path: Path, seconds: float, sine: float = 0.0) -> Path:
     return path
 
 
-def test_modes_come_without_a_force_channel(tmp_path: Path) -> None:
+def test_modes_come_without_a_force_channel(
+    tmp_path: Path, jointbench: Command
+) -> None:
     """The frequency within 0.2 %, and its uncertainty beside it."""
     path = shaken(tmp_path / "run.npy", 60.0)
     done = jointbench(
@@ -53,7 +70,9 @@ def test_modes_come_without_a_force_channel(tmp_path: Path) -> None:
     assert "Operational modes" in done.stderr
 
 
-def test_sines_are_taken_out_unless_they_are_to_be_kept(tmp_path: Path) -> None:
+def test_sines_are_taken_out_unless_they_are_to_be_kept(
+    tmp_path: Path, jointbench: Command
+) -> None:
     """Kept, a sine is found as a mode that is marked; it is left out of the list else.
 
     Without --output-only there is nothing to keep.
@@ -74,7 +93,9 @@ def test_sines_are_taken_out_unless_they_are_to_be_kept(tmp_path: Path) -> None:
     assert "add --output-only" in done.stderr
 
 
-def test_a_short_run_is_refused_in_one_line(tmp_path: Path) -> None:
+def test_a_short_run_is_refused_in_one_line(
+    tmp_path: Path, jointbench: Command
+) -> None:
     """With the time it would take."""
     path = shaken(tmp_path / "run.npy", 3.0)
     columns = "time:s,acceleration:m/s^2"
