@@ -224,6 +224,25 @@ def families(seed: int) -> Row:
     }
 
 
+def exponents(seed: int) -> Row:
+    """A random micro-slip joint: is its exponent in the 95 % interval."""
+    rng = np.random.default_rng(60_000 + seed)
+    change, decibel = float(rng.uniform(0.004, 0.03)), float(rng.choice(DECIBELS))
+    case = draw(
+        60_000 + seed, law="micro-slip", softening=change, decibel=decibel, bodies=1
+    )
+    mode = _nearest(_chain(case), float(case.structure.modes()[0][0] / 2 / np.pi))
+    row: Row = {"change": change, "decibel": decibel}
+    if mode is None:
+        return row | {"outcome": "no mode"}
+    first = mode.laws[0].name if mode.laws else None
+    return row | {
+        "outcome": mode.dependence.value,
+        "law_found": first,
+        **_exponent(case, mode),
+    }
+
+
 def pairs(seed: int) -> Row:
     """Two modes on one joint, 3 to 8 % apart: resolved, and right where they are."""
     rng = np.random.default_rng(50_000 + seed)
@@ -284,6 +303,7 @@ PARTS: dict[str, tuple[Callable[[int], Row], int]] = {
     "softening": (softening, 300),
     "linear": (linear, 400),
     "families": (families, 60),
+    "exponents": (exponents, 60),
     "pairs": (pairs, 60),
 }
 

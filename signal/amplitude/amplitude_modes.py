@@ -26,6 +26,7 @@ from jointbench.signal.amplitude.curve_laws import (
 from jointbench.signal.amplitude.curve_of_fit import (
     LevelCurve,
     amplitude_curve,
+    clear_turns,
     level_curve,
     shift_between,
 )
@@ -170,6 +171,7 @@ def _evidence(
         later=_later_change(curve, after, change),
         levels=levels[0],
         levels_words=levels[1],
+        turns=clear_turns(curve),
     )
 
 

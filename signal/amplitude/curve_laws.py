@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 import scipy.optimize
+import scipy.special
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.amplitude.amplitude_curve import (
@@ -32,6 +33,9 @@ _CLEAR = 3.0
 _SLIDER = "slider (Jenkins)"
 _EXPONENTS = (0.4, 1.0, 2.0)
 _EXPONENT_RANGE = (0.05, 4.0)
+# Displacements at which the smallest slider slips, over the largest; none first. Steps
+# of a third move an exponent by less than its uncertainty.
+_ONSETS = (0.0, *np.geomspace(1e-4, 0.1, 19))
 
 
 def family_of(change: Change) -> tuple[str, float]:
@@ -77,27 +81,40 @@ class _Law:
             over the energy of the mode, are proportional to.
         starts: of the free parameter; empty where there is none.
         bounds: of the free parameter.
+        onsets: below which the law does nothing, to be averaged over.
     """
 
     name: str
-    shapes: Callable[[FloatArray, float], tuple[FloatArray, FloatArray]]
+    shapes: Callable[[FloatArray, float, float], tuple[FloatArray, FloatArray]]
     starts: tuple[float, ...]
     bounds: tuple[float, float] = _EXPONENT_RANGE
+    onsets: tuple[float, ...] = (0.0,)
 
 
-def _power(x: FloatArray, p: float) -> tuple[FloatArray, FloatArray]:
-    return x**p, x**p
+def _power(x: FloatArray, p: float, onset: float) -> tuple[FloatArray, FloatArray]:
+    """Sliders whose stiffness goes with s^(p - 1) ds over their slip s > `onset`.
+
+    First harmonics of one slider, see `_slider`, summed in closed form; x^p without an
+    onset.
+    """
+    share = np.clip(onset / np.maximum(x, 1e-12), 0.0, 1.0)
+    own, _ = _slider(x, onset, 0.0)
+    whole = scipy.special.beta(p + 1.5, 1.5)
+    above = whole * (1.0 - scipy.special.betainc(p + 1.5, 1.5, share))
+    loss = 8.0 / np.pi * above - share**p * own
+    first, second = ((1.0 - share ** (p + n)) / (p + n) for n in (1.0, 2.0))
+    return x**p * loss / p, x**p * (first - second)
 
 
-def _cubic(x: FloatArray, p: float) -> tuple[FloatArray, FloatArray]:
+def _cubic(x: FloatArray, p: float, onset: float) -> tuple[FloatArray, FloatArray]:
     return x**2, np.zeros_like(x)
 
 
-def _quadratic(x: FloatArray, p: float) -> tuple[FloatArray, FloatArray]:
+def _quadratic(x: FloatArray, p: float, onset: float) -> tuple[FloatArray, FloatArray]:
     return np.zeros_like(x), x
 
 
-def _slider(x: FloatArray, slip: float) -> tuple[FloatArray, FloatArray]:
+def _slider(x: FloatArray, slip: float, onset: float) -> tuple[FloatArray, FloatArray]:
     """One Jenkins element: nothing below `slip`, then the exact first harmonic."""
     share = np.clip(slip / np.maximum(x, 1e-12), 0.0, 1.0)
     angle = np.arccos(np.clip(1.0 - 2.0 * share, -1.0, 1.0))
@@ -106,7 +123,7 @@ def _slider(x: FloatArray, slip: float) -> tuple[FloatArray, FloatArray]:
     return loss, damping
 
 
-def _stop(x: FloatArray, gap: float) -> tuple[FloatArray, FloatArray]:
+def _stop(x: FloatArray, gap: float, onset: float) -> tuple[FloatArray, FloatArray]:
     """A stop beyond a gap (or an opening): elastic, above a threshold."""
     share = np.clip(gap / np.maximum(x, 1e-12), 0.0, 1.0)
     engaged = 1.0 - 2.0 / np.pi * (np.arcsin(share) + share * np.sqrt(1.0 - share**2))
@@ -114,7 +131,7 @@ def _stop(x: FloatArray, gap: float) -> tuple[FloatArray, FloatArray]:
 
 
 _LAWS = (
-    _Law("micro-slip power law", _power, _EXPONENTS),
+    _Law("micro-slip power law", _power, _EXPONENTS, onsets=_ONSETS),
     _Law(_SLIDER, _slider, (0.1, 0.3, 0.7), (0.005, 0.999)),
     _Law("cubic spring", _cubic, ()),
     _Law("quadratic damping", _quadratic, ()),
@@ -179,43 +196,77 @@ def _root(curve: LevelCurve, part: slice, stiffness: FloatArray) -> FloatArray:
 
 
 def _fit_law(law: _Law, x: FloatArray, data: FloatArray, root: FloatArray) -> LawFit:
-    """Fit one law; constants and sizes are linear, the exponent is searched for."""
+    """Fit one law; constants and sizes are linear, the exponent is searched for.
 
-    def left(p: float) -> tuple[FloatArray, int]:
-        columns = _columns(law, x, p)
-        whitened = scipy.linalg.solve_triangular(
-            root, np.column_stack((columns, data)), lower=True
-        )
-        solved = np.linalg.lstsq(whitened[:, :-1], whitened[:, -1], rcond=1e-10)[0]
-        return whitened[:, -1] - whitened[:, :-1] @ solved, columns.shape[1]
-
+    Where the smallest slider slips is not known and moves the exponent: one half of the
+    probability is that of no onset, the other is spread over the onsets.
+    """
     if not law.starts:
-        rest, size = left(1.0)
+        rest, size = _left(law, x, data, root, 1.0, 0.0)
         chi2 = float(rest @ rest)
         exponent = 2.0 if law.shapes is _cubic else 1.0
         return LawFit(law.name, exponent, 0.0, chi2, chi2 + size * np.log(data.size))
+    found: list[tuple[float, float, float, int]] = []
+    for onset in law.onsets:
+        starts = law.starts if not found else (found[-1][0],)
+        found.append(_searched(law, x, data, root, starts, onset))
+    value, variance, chi2, size = np.array(found).T
+    criterion = chi2 + size * np.log(data.size)
+    best = int(np.argmin(criterion))
+    excess = max(1.0, float(chi2[best]) / max(data.size - float(size[best]), 1.0))
+    prior = np.full(value.size, 0.5 / max(value.size - 1, 1))
+    prior[0] = 0.5
+    weight = scipy.special.softmax(np.log(prior) - 0.5 * chi2 / excess)
+    mean = float(weight @ value)
+    sd = float(np.sqrt(weight @ (excess * variance + (value - mean) ** 2)))
+    return LawFit(law.name, mean, sd, float(chi2[best]), float(criterion[best]))
+
+
+def _searched(
+    law: _Law,
+    x: FloatArray,
+    data: FloatArray,
+    root: FloatArray,
+    starts: Sequence[float],
+    onset: float,
+) -> tuple[float, float, float, int]:
+    """Return the free parameter, its variance, chi-squared and all parameters."""
 
     def residual(parameter: FloatArray) -> FloatArray:
-        return left(float(parameter[0]))[0]
+        return _left(law, x, data, root, float(parameter[0]), onset)[0]
 
     tried = [
         scipy.optimize.least_squares(residual, [start], bounds=law.bounds)
-        for start in law.starts
+        for start in starts
     ]
     best = min(tried, key=lambda one: float(one.cost))
-    chi2, size = 2.0 * float(best.cost), left(float(best.x[0]))[1] + 1
+    value = float(best.x[0])
+    size = _left(law, x, data, root, value, onset)[1] + 1 + (onset > 0.0)
     slope = float(np.sum(np.asarray(best.jac) ** 2))
-    excess = max(1.0, chi2 / max(data.size - size, 1))
-    sd = float(np.sqrt(excess / slope)) if slope > 0 else float("inf")
-    return LawFit(
-        law.name, float(best.x[0]), sd, chi2, chi2 + size * float(np.log(data.size))
+    variance = 1.0 / slope if slope > 0.0 else float("inf")
+    return value, variance, 2.0 * float(best.cost), size
+
+
+def _left(
+    law: _Law,
+    x: FloatArray,
+    data: FloatArray,
+    root: FloatArray,
+    p: float,
+    onset: float,
+) -> tuple[FloatArray, int]:
+    """Return what a law leaves of the data, whitened, and its linear parameters."""
+    columns = _columns(law.shapes(x, p, onset))
+    whitened = scipy.linalg.solve_triangular(
+        root, np.column_stack((columns, data)), lower=True
     )
+    solved = np.linalg.lstsq(whitened[:, :-1], whitened[:, -1], rcond=1e-10)[0]
+    return whitened[:, -1] - whitened[:, :-1] @ solved, columns.shape[1]
 
 
-def _columns(law: _Law, x: FloatArray, p: float) -> FloatArray:
+def _columns(shapes: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return constants of both curves and the law's shapes, stacked."""
-    shapes = law.shapes(x, p)
-    none, one = np.zeros_like(x), np.ones_like(x)
+    none, one = np.zeros_like(shapes[0]), np.ones_like(shapes[0])
     columns = [np.concatenate((one, none)), np.concatenate((none, one))]
     if np.any(shapes[0]):
         columns.append(np.concatenate((shapes[0], none)))

@@ -22,6 +22,8 @@ _POINTS = 40
 _KNOWN = 0.5
 # Correction of the rate of a decay, at least.
 _LEAST_FALL = -0.5
+# Standard uncertainties by which a curve comes back where it turns round.
+_CLEAR = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,3 +182,33 @@ def shift_between(main: LevelCurve, later: LevelCurve) -> tuple[FloatArray, Floa
     own_omega = np.interp(inside, main.level, main.log_omega)
     own_zeta = np.interp(inside, main.level, main.log_zeta)
     return np.abs(omega - own_omega), np.abs(zeta - own_zeta)
+
+
+def clear_turns(curve: LevelCurve) -> int:
+    """Return how often frequency or damping turns round along the curve, the larger.
+
+    A turn counts where the curve comes back by more than three standard uncertainties
+    of the difference.
+    """
+    part = known_part(curve)
+    return max(
+        _turns(curve.log_omega[part], curve.omega_covariance[part, part]),
+        _turns(curve.log_zeta[part], curve.zeta_covariance[part, part]),
+    )
+
+
+def _turns(value: FloatArray, covariance: FloatArray) -> int:
+    """Return the turns of the longest chain of clear steps to and fro."""
+    own = np.diag(covariance)
+    variance = own[:, None] + own - 2.0 * covariance
+    limit = _CLEAR * np.sqrt(np.maximum(variance, 1e-30))
+    step = value - value[:, None]
+    rises, falls = np.zeros(value.size, int), np.zeros(value.size, int)
+    for now in range(1, value.size):
+        before = slice(0, now)
+        up = step[before, now] > limit[before, now]
+        down = -step[before, now] > limit[before, now]
+        rises[now] = np.max(falls[before][up] + 1, initial=0)
+        falls[now] = np.max(rises[before][down] + 1, initial=0)
+    longest = max(np.max(rises, initial=0), np.max(falls, initial=0))
+    return max(int(longest) - 1, 0)

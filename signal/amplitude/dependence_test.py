@@ -32,6 +32,9 @@ LARGEST_RESIDUAL_RATIO = 2.0
 """Rms residual over noise above which a residual is not white."""
 # A change must stand this many standard uncertainties from none.
 _CLEAR = 3.0
+# A joint's law turns frequency or damping round once or twice; a beat with a neighbour
+# that was not resolved does so every period.
+_MOST_TURNS = 3
 # A later start may change the change by this share of it.
 _KEPT = 0.5
 # Ends of the curve between which the change is taken, as shares of its points: the
@@ -94,6 +97,7 @@ class DependenceEvidence:
         levels: chance that the levels differ as much in a linear structure, compared
             without a model of the decay; None where that could not be asked.
         levels_words: why it could not, or empty.
+        turns: how often the curve clearly turns round.
     """
 
     chance: float
@@ -104,6 +108,7 @@ class DependenceEvidence:
     later: Change | None
     levels: float | None
     levels_words: str
+    turns: int = 0
 
 
 def score_chance(fit: BandFit, number: int) -> float:
@@ -225,8 +230,11 @@ def curve_holds(found: DependenceEvidence) -> bool:
     """Return whether nothing speaks against the curve itself.
 
     False where much of the excess residual stays, or where a later start gives another
-    change: a neighbour may be missing, and the band of the curve does not know it.
+    change: a neighbour may be missing, and the band of the curve does not know it. A
+    beat is no function of amplitude.
     """
+    if found.turns > _MOST_TURNS:
+        return False
     unexplained = found.linear_residual_ratio > _EXCESS and found.explained < _EXPLAINED
     change = found.change
     if unexplained or change is None or found.later is None:
@@ -243,6 +251,11 @@ def _doubts(found: DependenceEvidence, change: Change) -> tuple[str, ...]:
         words.append(
             f"residual not white: curves remove {100 * found.explained:.0f} % of the "
             f"excess only (least {100 * _EXPLAINED:.0f} %); a neighbour may be missing"
+        )
+    if found.turns > _MOST_TURNS:
+        words.append(
+            f"a beat: the curve turns round {found.turns} times (a joint's law at most "
+            f"{_MOST_TURNS}); a neighbour close by is not resolved"
         )
     if found.later is None or not _same(change, found.later):
         words.append("the change does not stay when the decays start later")
