@@ -278,7 +278,12 @@ def _swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     moved = bench.residual(fit.base, (*fit.terms, Term(candidate, tail)), MIDDLE)
     d = (moved - plain) / SEARCH.exchange_probe
     hessian = fit.jacobian.T @ fit.jacobian + 1e-6 * np.diag(fit.prior)
-    way = -np.linalg.solve(hessian, fit.jacobian.T @ d)
+    # A parameter that changes no record, of an effect beyond its threshold, stays.
+    alive = np.diag(hessian) > 0.0
+    way = np.zeros_like(fit.x)
+    way[alive] = -np.linalg.solve(
+        hessian[np.ix_(alive, alive)], (fit.jacobian.T @ d)[alive]
+    )
     off = fit.x - fit.centre
     amplitude = -float(off @ (fit.prior * way)) / float(way @ (fit.prior * way))
     amplitude = float(np.clip(amplitude, *first.bounds))

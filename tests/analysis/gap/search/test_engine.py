@@ -29,7 +29,8 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.exchange import exchanged
 from jointbench.analysis.gap.search.restarts import caught_up, crossed
-from jointbench.analysis.gap.search.screening import null_threshold
+from jointbench.analysis.gap.search.screening import null_threshold, screen
+from jointbench.analysis.gap.search.selection_round import run_selection
 
 ROWS, GROUPS = 4000, 8
 POWERS = {"square": 2, "cube": 3, "fifth": 5}
@@ -227,9 +228,8 @@ class Kinked(Curve):
         """Return (model - measurement) / 0.01."""
         y = FAR_LOAD * np.exp(base[0])
         for term in terms:
-            y = y + term.coordinates[0] * np.maximum(
-                FAR_LOAD - np.exp(term.coordinates[1]), 0.0
-            )
+            edge = np.exp(term.coordinates[1:]).sum()  # 0 without a threshold
+            y = y + term.coordinates[0] * np.maximum(FAR_LOAD - edge, 0.0)
         return np.asarray((y - self.measured) / 0.01)
 
 
@@ -375,6 +375,21 @@ def test_the_directed_tests_belong_to_the_best_fit(
     assert acceptance.left is not None
     assert all(d.shift.shape == ranked[0].x.shape for d in acceptance.left.directions)
     assert acceptance.passed
+
+
+def test_an_effect_beyond_its_threshold_leaves_the_next_effect_its_start() -> None:
+    """A kink above every load changes no value; a stiffness is added beside it."""
+    noise = 0.01 * np.random.default_rng(4).standard_normal(ROWS)
+    bench = Kinked(1.05 * FAR_LOAD + noise, (KINK,))
+    above = np.array([0.0, 0.5, np.log(3.0)])
+    fit = minimise(make_problem(bench, (KINK,)), above, iterations=1)
+    assert not fit.jacobian[:, 1:].any()
+    other = effect("other")
+    other = replace(other, effect=replace(other.effect, by_prior=True))
+    found = run_selection(
+        bench, fit, screen(bench, fit, [other]), [other], lambda line: None
+    )
+    assert names_of(found[0]) == ["kink", "other"]
 
 
 def names_of(fit: Fit) -> list[str]:
