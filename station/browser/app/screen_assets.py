@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""The files of the front end, as they are in the package."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+_TYPES = {
+    "css": "text/css; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
+    "svg": "image/svg+xml",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Asset:
+    """One file.
+
+    Attributes:
+        name: below ``/assets/``.
+        type: as in the header Content-Type.
+        content: bytes.
+    """
+
+    name: str
+    type: str
+    content: bytes
+
+
+def screen_assets() -> tuple[Asset, ...]:
+    """Return the files that a browser may ask for; the palette is the report's."""
+    palette = files("jointbench.station.screen").joinpath("palette.css")
+    room = files("jointbench.station.browser").joinpath("assets")
+    return (Asset(palette.name, _TYPES["css"], palette.read_bytes()), *_below(room, ""))
+
+
+def _below(folder: Traversable, prefix: str) -> Iterator[Asset]:
+    for entry in folder.iterdir():
+        kind = _TYPES.get(entry.name.rpartition(".")[2])
+        if entry.is_dir():
+            yield from _below(entry, f"{prefix}{entry.name}/")
+        elif kind is not None:
+            yield Asset(prefix + entry.name, kind, entry.read_bytes())
