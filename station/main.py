@@ -53,6 +53,7 @@ from jointbench.station.commands.reprocessing_commands import (
     process_command,
     reprocess_command,
 )
+from jointbench.station.commands.screen_commands import bench_command
 from jointbench.station.commands.shared_options.registered_names import (
     added_effects,
     command_with_names,
@@ -69,6 +70,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
     "At the bench": {
         "demo": demo_command,
         "measure": measure_command,
+        "bench": bench_command,
         "record": record_command,
         "watch": watch_command,
         "doctor": doctor_command,

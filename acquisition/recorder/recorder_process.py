@@ -7,10 +7,9 @@ or die without a sample lost.
 """
 
 import multiprocessing
-import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from multiprocessing.context import BaseContext
 from pathlib import Path
 from types import TracebackType
@@ -19,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.clean_process import without_main
 from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.ni.stream_records import (
     Block,
@@ -90,7 +90,7 @@ class RecorderProcess:
         self._process = context.Process(  # type: ignore[attr-defined]
             target=run_recorder, args=(far, setup), name="jointbench recorder"
         )
-        with _without_main():
+        with without_main():
             self._process.start()
         far.close()
         try:
@@ -360,23 +360,3 @@ def _context() -> BaseContext:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([run_recorder.__module__])
     return context
-
-
-@contextmanager
-def _without_main() -> Iterator[None]:
-    """Hide the main module from a process that starts meanwhile.
-
-    `multiprocessing` would import it there again: all modules of the caller, and a
-    script that measures without a guard would measure twice.
-    """
-    main = sys.modules["__main__"]
-    hidden: dict[str, object] = {
-        name: vars(main).pop(name)
-        for name in ("__file__", "__spec__")
-        if name in vars(main)
-    }
-    vars(main)["__spec__"] = None
-    try:
-        yield
-    finally:
-        vars(main).update(hidden)

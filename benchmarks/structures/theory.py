@@ -30,7 +30,7 @@ from jointbench.simulators.plates.plates import (
     REFERENCE_TORQUE,
     PlatesDesign,
 )
-from jointbench.station.commands.identify_structure_command import (
+from jointbench.station.commands.identify.identify_structure_command import (
     run_identify_structure,
 )
 from jointbench.station.joints.contact_comparison import against_theory, theory_json

@@ -2,7 +2,11 @@
 """What a view of a running session is: a client of its events."""
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import Protocol
+
+from rich.console import Console
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.station.session_events.command_codec import Command
@@ -22,4 +26,19 @@ class LiveView(Protocol):
 
     def command(self) -> Command | None:
         """Return what the operator asked for since the last call, if anything."""
+        ...
+
+
+class Viewing(Protocol):
+    """Opens the view of a session."""
+
+    def __call__(
+        self, screen: Console, file: Path, /
+    ) -> AbstractContextManager[LiveView]:
+        """Show a session as long as the context lasts.
+
+        Args:
+            screen: terminal, or where lines go.
+            file: of the session, which may not be there yet.
+        """
         ...

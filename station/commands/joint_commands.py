@@ -56,7 +56,7 @@ def identify_command(
         --surface face-b.csv --report joints.html
     """
     from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
-    from jointbench.station.commands.identify_links_command import identify_any
+    from jointbench.station.commands.identify.identify_links_command import identify_any
 
     fits = identify_any(
         model,

@@ -11,7 +11,7 @@ from jointbench.acquisition.session_file.overwrite_guard import require_replacea
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.analysis.lumped.identified import identification_json
 from jointbench.simulators.rough_surfaces.surface_files import DATE
-from jointbench.station.commands.identify_links_command import show_joint
+from jointbench.station.commands.identify.identify_links_command import show_joint
 from jointbench.station.commands.surface_command import show_surfaces
 from jointbench.station.demo.demo_bench import DemoSession, record_demo_session
 from jointbench.station.demo.demo_gap import FILES as GAP_FILES

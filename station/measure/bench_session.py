@@ -33,8 +33,8 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live
 from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.live_write import channel_rows
-from jointbench.station.bench_view.live_view import LiveView
-from jointbench.station.bench_view.terminal_view import viewing
+from jointbench.station.bench_view.live_view import LiveView, Viewing
+from jointbench.station.bench_view.terminal_view import viewing as viewing_terminal
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.session_place import (
     Place,
@@ -52,6 +52,7 @@ from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.session_events.command_queue import CommandQueue
 from jointbench.station.sources.serial_port import line_name
 
 
@@ -87,6 +88,8 @@ def run_measure(
     source: str | None,
     overwrite: bool,
     json_target: str | None,
+    viewing: Viewing = viewing_terminal,
+    commands: CommandQueue | None = None,
 ) -> Measured:
     """Measure by a plan, hands-free.
 
@@ -96,6 +99,8 @@ def run_measure(
         source: URL of the chassis; None for the plan's own.
         overwrite: replace a session that is there, once the new one is whole.
         json_target: where the JSON goes.
+        viewing: opens the view of the session.
+        commands: queue that other views submit to; None for the terminal's alone.
 
     Raises:
         UsageError: there is no source, the session is there already, is being
@@ -115,7 +120,7 @@ def run_measure(
     with session_place(out, overwrite=overwrite) as place:
         with _naming_file(place, screen), open_chassis(url) as opened:
             with viewing(screen, place.own) as view:
-                measured = measure(plan, opened, place.own, view)
+                measured = measure(plan, opened, place.own, view, commands)
         measured = replace(measured, path=place.settle(whole=measured.whole))
         write_json(json_target, _summary(measured))
         _show(measured, screen)
@@ -136,9 +141,20 @@ def _naming_file(place: Place, screen: Console) -> Iterator[None]:
 
 
 def measure(
-    plan: MeasurePlan, opened: OpenChassis, out: Path, view: LiveView
+    plan: MeasurePlan,
+    opened: OpenChassis,
+    out: Path,
+    view: LiveView,
+    commands: CommandQueue | None = None,
 ) -> Measured:
     """Record a session into `out` and finish its file, come what may.
+
+    Args:
+        plan: what is measured.
+        opened: chassis.
+        out: new file.
+        view: on this computer.
+        commands: queue that other views submit to; None for the view's alone.
 
     Raises:
         InstrumentError: the chassis refuses or does not come back, or the disk is
@@ -153,7 +169,8 @@ def measure(
             with RecorderProcess(
                 _setup(plan, opened), given_up=lambda: record.interrupted
             ) as recorder:
-                _record(plan, opened, out, (recorder, view, warnings, record))
+                desk = SessionDesk(recorder, view, commands or CommandQueue())
+                _record(plan, opened, out, (desk, warnings, record))
         except BaseException:
             # What went wrong first is what the operator has to know.
             with suppress(JointbenchError):
@@ -198,10 +215,10 @@ def _record(
     plan: MeasurePlan,
     opened: OpenChassis,
     out: Path,
-    running: tuple[RecorderProcess, LiveView, tuple[str, ...], Record],
+    running: tuple[SessionDesk, tuple[str, ...], Record],
 ) -> None:
-    recorder, view, warnings, record = running
-    desk = SessionDesk(recorder, view)
+    desk, warnings, record = running
+    recorder = desk.recorder
     channels = table_channels(plan.sensors)
     with _torque_tester(plan) as bolts:
         recorder.begin(out, _meta(plan, opened, channels, recorder.sample_rate))

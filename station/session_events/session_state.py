@@ -19,7 +19,12 @@ from jointbench.station.session_events.flow_events import (
     SessionEnded,
     Warned,
 )
-from jointbench.station.session_events.hit_events import CheckDone, HitJudged
+from jointbench.station.session_events.hit_events import (
+    CheckDone,
+    GainForecast,
+    HitJudged,
+    SettingProposed,
+)
 from jointbench.station.session_events.operator_events import (
     CommandAnswered,
     ConditionReopened,
@@ -52,6 +57,8 @@ class SessionState:
         run_time: when, since 1970 [s].
         tighten: bolt that is tightened now, None for none.
         average: after the last hit, None before.
+        gains: the last two forecasts of what further hits would buy.
+        settings: that trial hits proposed, by name; the latest ones.
         finished: names of the conditions that are over, with whether given up.
         checks: on the part.
         warnings: all of them; they stay.
@@ -80,6 +87,8 @@ class SessionState:
     run_time: float = 0.0
     tighten: BoltAsked | None = None
     average: HitAveraged | None = None
+    gains: tuple[GainForecast, ...] = ()
+    settings: dict[str, SettingProposed] = field(default_factory=dict)
     finished: dict[str, bool] = field(default_factory=dict)
     checks: tuple[CheckDone, ...] = ()
     warnings: tuple[str, ...] = ()
@@ -151,6 +160,10 @@ def _after_command(state: SessionState, stamped: Stamped) -> SessionState:
             return replace(state, answers=(*state.answers, answer)[-_LAST:])
         case NoteAdded(words=words):
             return replace(state, notes=(*state.notes, words))
+        case GainForecast() as gain:
+            return replace(state, gains=(*state.gains, gain)[-2:])
+        case SettingProposed(name=name) as setting:
+            return replace(state, settings={**state.settings, name: setting})
         case PauseChanged(paused=paused):
             return replace(state, paused=paused)
         case WarningsSeen(count=count):

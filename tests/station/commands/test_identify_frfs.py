@@ -8,7 +8,7 @@ import xarray
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
-from jointbench.station.commands.identify_links_command import run_identify
+from jointbench.station.commands.identify.identify_links_command import run_identify
 from jointbench.station.gap.line_files import LineRequest, read_lines
 from jointbench.station.gap.run_gap import run_gap
 from jointbench.station.joints.structure_states import measured_states

@@ -12,7 +12,7 @@ import xarray as xr
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.session import new_session
 from jointbench.acquisition.session_file.store import read_session, write_session
-from jointbench.station.commands.identify_links_command import run_identify
+from jointbench.station.commands.identify.identify_links_command import run_identify
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.demo.demo import require_demo, run_demo
 from jointbench.station.demo.demo_bench import HITS

@@ -71,7 +71,7 @@ def identify_any(
         UsageError: a lumped bench without a session, or with --report or --surface.
     """
     if describes_structure(model):
-        from jointbench.station.commands.identify_structure_command import (
+        from jointbench.station.commands.identify.identify_structure_command import (
             run_identify_structure,
         )
 

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""The socket of a screen: state and envelope of the signals as they come.
+
+Each screen has a place of its own in the stream. One that does not read (a frozen
+browser) waits alone, and continues with the newest bins.
+"""
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from jointbench.station.browser.bench.session_feed import SessionFeed
+
+if TYPE_CHECKING:
+    from starlette.websockets import WebSocket
+
+_EVERY = 1.0
+"""Longest time between two states, whose clocks go on [s]."""
+_FRAME = 0.045
+"""Least time between two sets of bins [s]; more would not be seen."""
+
+
+class LiveSocket:
+    """Serves all open screens of a session."""
+
+    def __init__(self, feed: SessionFeed, watchers: Callable[[int], None]) -> None:
+        """Prepare to serve.
+
+        Args:
+            feed: of the session.
+            watchers: takes the number of open screens.
+        """
+        self._feed, self._watchers, self._open = feed, watchers, 0
+
+    async def serve(self, socket: "WebSocket") -> None:
+        """Serve one screen until it leaves."""
+        from starlette.websockets import WebSocketDisconnect
+
+        await socket.accept()
+        self._count(1)
+        leaving = asyncio.create_task(_left(socket))
+        try:
+            await self._send_all(socket, leaving)
+        except (WebSocketDisconnect, RuntimeError, OSError):
+            pass  # it left while something was sent
+        finally:
+            leaving.cancel()
+            with suppress(asyncio.CancelledError):
+                await leaving
+            self._count(-1)
+
+    def _count(self, change: int) -> None:
+        self._open += change
+        self._watchers(self._open)
+
+    async def _send_all(self, socket: "WebSocket", leaving: asyncio.Task[None]) -> None:
+        feed, loop = self._feed, asyncio.get_running_loop()
+        shown, told, drawn, sent = -2, 0.0, 0.0, 0
+        while not leaving.done():
+            now = loop.time()
+            if feed.state.last != shown or now - told > _EVERY:
+                shown, told = feed.state.last, now
+                await socket.send_json({"state": feed.snapshot()})
+            ring = feed.ring
+            if ring is not None and ring.past > sent and now - drawn >= _FRAME:
+                drawn = now
+                message, sent = ring.message(sent), ring.past
+                await socket.send_bytes(message)
+            await feed.wait(_EVERY / 2)
+
+
+async def _left(socket: "WebSocket") -> None:
+    """Return when the screen leaves; what it sends meanwhile means nothing."""
+    while (await socket.receive())["type"] != "websocket.disconnect":
+        pass

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""The server of a screen as the measuring program keeps it running."""
+
+import multiprocessing
+import socket
+import threading
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from multiprocessing.connection import Connection
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from jointbench.acquisition.basics.clean_process import without_main
+from jointbench.acquisition.basics.errors import FormatError
+from jointbench.station.browser.app.serve_screen import loopback_socket
+from jointbench.station.browser.bench.bench_server import run_bench_server
+from jointbench.station.browser.bench.screen_link import (
+    Serving,
+    Submitted,
+    Taken,
+    Watched,
+)
+from jointbench.station.browser.guard.screen_access import ScreenAccess
+from jointbench.station.session_events.command_codec import command_from_json
+from jointbench.station.session_events.command_queue import CommandQueue
+
+_VIEW = "browser"
+_BRIEF = 3.0
+"""A server that ends sooner is not worth another one at once [s]."""
+_MOST_BRIEF = 3
+_UNWATCHED = 5.0
+"""Without an open screen after which a finished session is left [s]."""
+_LOOK = 0.2  # [s]
+_LAST_WORD = 5.0  # [s]
+
+
+class ScreenProcess:
+    """Serves a screen from a process of its own, started again where it dies.
+
+    Attributes:
+        access: of the screen.
+        process_id: number of the process in the system, 0 without one.
+    """
+
+    def __init__(
+        self,
+        session: Path,
+        commands: CommandQueue,
+        *,
+        port: int = 0,
+        geometry: Mapping[str, Any] | None = None,
+        say: Callable[[str], None] = lambda line: None,
+    ) -> None:
+        """Start serving.
+
+        Args:
+            session: file that it follows, which may not be there yet.
+            commands: takes those of the screens.
+            port: TCP port; 0 for any that is free.
+            geometry: points and lines as JSON types.
+            say: takes a line where the screen is given up.
+
+        Raises:
+            UsageError: the port is taken.
+        """
+        self._listening: socket.socket = loopback_socket(port)
+        self.access = ScreenAccess(self._listening.getsockname()[1])
+        self.process_id = 0
+        self._serving = Serving(session, self.access.port, self.access.token, geometry)
+        self._commands, self._say = commands, say
+        self._closing = threading.Event()
+        self._watched = 0
+        self._unwatched_since = time.monotonic()
+        self._link: Connection | None = None
+        self._thread = threading.Thread(target=self._keep, name="screen", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> "ScreenProcess":
+        """Return the screen."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """End serving."""
+        self._closing.set()
+        if self._link is not None:
+            with suppress(OSError):
+                self._link.close()
+        self._thread.join(_LAST_WORD)
+        self._listening.close()
+
+    def moved(self, session: Path) -> None:
+        """Take note that the session has another name, for the next server."""
+        self._serving = replace(self._serving, session=session)
+
+    def linger(self) -> None:
+        """Return once no screen has been open for some seconds, or on Ctrl-C."""
+        self._unwatched_since = time.monotonic()
+        with suppress(KeyboardInterrupt):
+            while self._thread.is_alive() and (
+                self._watched or time.monotonic() - self._unwatched_since < _UNWATCHED
+            ):
+                time.sleep(_LOOK)
+
+    def _keep(self) -> None:
+        brief = 0
+        while not self._closing.is_set() and brief < _MOST_BRIEF:
+            began = time.monotonic()
+            self._serve_once()
+            brief = brief + 1 if time.monotonic() - began < _BRIEF else 0
+        if not self._closing.is_set():
+            self._say("the screen in the browser has ended; the session continues")
+
+    def _serve_once(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        link, far = context.Pipe()
+        self._link = link
+        process = context.Process(
+            target=run_bench_server,
+            args=(far, self._listening, self._serving),
+            name="jointbench screen",
+            daemon=True,
+        )
+        with without_main():
+            process.start()
+        far.close()
+        self.process_id = process.pid or 0
+        with suppress(EOFError, OSError):
+            while not self._closing.is_set():
+                self._take(link, link.recv())
+        with suppress(OSError):
+            link.close()
+        self._watch(0)
+        process.join(_LAST_WORD)
+        if process.is_alive():
+            process.kill()
+
+    def _take(self, link: Connection, news: object) -> None:
+        if isinstance(news, Watched):
+            self._watch(news.count)
+        elif isinstance(news, Submitted):
+            link.send(Taken(news.tag, self._queued(news.command)))
+
+    def _watch(self, count: int) -> None:
+        self._watched = count
+        if not count:
+            self._unwatched_since = time.monotonic()
+
+    def _queued(self, content: Mapping[str, object]) -> Mapping[str, Any]:
+        try:
+            ticket = self._commands.submit(command_from_json(content), by=_VIEW)
+        except FormatError as error:
+            return {"id": None, "done": False, "words": str(error)}
+        if ticket.answer is not None:
+            return ticket.answer.to_json()
+        return {"id": ticket.id, "done": None, "words": ""}

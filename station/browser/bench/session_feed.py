@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""A session as the server of a screen follows it: from its file alone, like `watch`."""
+
+import asyncio
+import shutil
+import time
+from collections import OrderedDict
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.acquisition.session_file.follow_log import read_log
+from jointbench.acquisition.session_file.follow_recording import (
+    RecordingTail,
+    recording_tail,
+)
+from jointbench.station.browser.bench.bench_state import bench_state
+from jointbench.station.browser.bench.envelope_ring import EnvelopeRing
+from jointbench.station.browser.bench.hit_pictures import hit_picture
+from jointbench.station.session_events.condition_states import seconds_left
+from jointbench.station.session_events.event_codec import from_log
+from jointbench.station.session_events.hit_events import HitJudged
+from jointbench.station.session_events.session_state import SessionState, state_after
+
+_EVERY = 0.02  # [s] between looks at the file
+_RETRY = 0.2  # [s] between looks for a file that is not there
+WINDOW = 2.0
+"""Time that the live view of the signals shows [s]."""
+_BINS = 800  # of that time
+_PICTURES = 200  # of hits that are kept
+_DISK_EVERY = 5.0  # [s] between looks at the disk
+
+
+class SessionFeed:
+    """State, envelope and hits of one session; many screens may read them.
+
+    Attributes:
+        path: of the session.
+        meta: head of the recording, empty before.
+        sensors: entries of the log about them, by name.
+        state: after the last event.
+        ring: envelope of the signals, None before the first sample.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Follow a session, which may not be there yet.
+
+        Args:
+            path: of the session.
+        """
+        self.path = path
+        self.meta: dict[str, Any] = {}
+        self.sensors: dict[str, dict[str, Any]] = {}
+        self.state = SessionState()
+        self.ring: EnvelopeRing | None = None
+        self._tail: RecordingTail | None = None
+        self._entries = self._stored = 0
+        self._pictures: OrderedDict[int, dict[str, Any]] = OrderedDict()
+        self._news = asyncio.Event()
+        self._free: tuple[float, int | None] = (float("-inf"), None)
+        self._shown: tuple[int, dict[str, Any]] = (-2, {})
+
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
+        """Follow the session within the context."""
+        task = asyncio.create_task(self._follow())
+        try:
+            yield
+        finally:
+            task.cancel()
+            with suppress(asyncio.CancelledError):
+                await task
+            self._close()
+
+    async def wait(self, seconds: float) -> None:
+        """Return when there is something new, or after a time [s]."""
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._news.wait(), seconds)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the state for a screen, as it is now."""
+        number, content = self._shown
+        if number != self.state.last or not content:
+            content = bench_state(self.state)
+            self._shown = self.state.last, content
+        now = time.time()
+        return {
+            **content,
+            "now": now,
+            "seconds_left": seconds_left(self.state, now),
+            "free": self._room(),
+            "file": str(self.path),
+            "window": WINDOW,
+            "channels": self.meta.get("channels", []),
+            "sensors": self.sensors,
+        }
+
+    def picture(self, number: int) -> dict[str, Any] | None:
+        """Return a hit for a screen; None where its samples are not at hand.
+
+        Args:
+            number: of the hit, from 0.
+        """
+        if number not in self._pictures and number in self.state.hits:
+            self._draw(self.state.hits[number])
+        return self._pictures.get(number)
+
+    async def _follow(self) -> None:
+        while self.state.ended is None:
+            if self._tail is None and not self._open():
+                await asyncio.sleep(_RETRY)
+                continue
+            try:
+                fresh = self._look()
+            except (OSError, RuntimeError):  # the finished file takes its place
+                self._close()
+                continue
+            if fresh:
+                self._tell()
+            await asyncio.sleep(_EVERY)
+        self._close()
+
+    def _tell(self) -> None:
+        """Wake whoever waits; an event that is set and cleared wakes all of them."""
+        self._news.set()
+        self._news.clear()
+
+    def _open(self) -> bool:
+        """Open the recording, or read a finished one; return whether to go on."""
+        self._tail = recording_tail(self.path)
+        if self._tail is not None:
+            self.meta = self._tail.meta
+            self._entries = 0
+            return True
+        with suppress(JointbenchError):
+            entries, live = read_log(self.path)
+            if entries and not live:
+                self._take(entries[self._entries :])
+                self._tell()
+        return False
+
+    def _look(self) -> bool:
+        """Take what is new in the file; return whether there was anything."""
+        tail = self._tail
+        assert tail is not None
+        stored = tail.stored()
+        fresh = stored > self._stored
+        if fresh:
+            self._envelope(tail, stored)
+        entries = tail.entries()
+        if entries:
+            self._take(entries)
+        return fresh or bool(entries)
+
+    def _take(self, entries: tuple[dict[str, Any], ...]) -> None:
+        """Take entries of the log; a hit is drawn while its samples are at hand."""
+        first, self._entries = self._entries, self._entries + len(entries)
+        for entry in entries:
+            if entry.get("kind") == "sensor":
+                self.sensors[str(entry.get("name"))] = entry
+        known = self.state.last
+        events = [e for e in from_log(entries, first=first) if e.id > known]
+        self.state = state_after(self.state, events)
+        for stamped in events[-4:]:
+            if isinstance(stamped.event, HitJudged):
+                self._draw(stamped.event)
+
+    def _envelope(self, tail: RecordingTail, stored: int) -> None:
+        rate = float(self.meta["sample_rate"])
+        if self.ring is None:
+            per_bin = max(1, round(WINDOW * rate / _BINS))
+            self.ring = EnvelopeRing(
+                len(self.meta["channels"]), per_bin=per_bin, kept=_BINS
+            )
+        late = stored - self._stored - round(WINDOW * rate)
+        if late > 0:
+            self.ring.skip(late)
+            self._stored += late
+        self.ring.feed(tail.read(self._stored, stored))
+        self._stored = stored
+
+    def _draw(self, hit: HitJudged) -> None:
+        if self._tail is None or hit.number in self._pictures:
+            return
+        with suppress(OSError, RuntimeError):
+            samples = self._tail.read(hit.start, hit.stop)
+            if samples.shape[1]:
+                self._pictures[hit.number] = hit_picture(
+                    hit,
+                    samples,
+                    self.meta["channels"],
+                    float(self.meta["sample_rate"]),
+                )
+        while len(self._pictures) > _PICTURES:
+            self._pictures.popitem(last=False)
+
+    def _room(self) -> int | None:
+        looked, free = self._free
+        if time.monotonic() - looked > _DISK_EVERY:
+            free = None
+            with suppress(OSError):
+                free = shutil.disk_usage(self.path.parent).free
+            self._free = time.monotonic(), free
+        return free
+
+    def _close(self) -> None:
+        if self._tail is not None:
+            with suppress(OSError, RuntimeError):
+                self._tail.close()
+            self._tail = None
