@@ -11,6 +11,7 @@ from jointbench.station.session_events.command_codec import Command
 from jointbench.station.session_events.command_queue import CommandRefused
 from jointbench.station.session_events.flow_commands import (
     AddNote,
+    ChangeSetting,
     ContinueSession,
     PauseSession,
     QuitSession,
@@ -25,6 +26,7 @@ from jointbench.station.session_events.hit_commands import (
     RepeatPoint,
     UndoVerdict,
 )
+from jointbench.station.session_events.hit_events import SettingProposed
 from jointbench.station.session_events.operator_events import (
     PAUSE,
     NoteAdded,
@@ -79,6 +81,8 @@ class OperatorCommands:
                 return self._pause()
             case ContinueSession():
                 return self._continue()
+            case ChangeSetting(name=name, value=value):
+                return self._set(name, value)
         if self.paused:
             raise CommandRefused("the session pauses; continue first")
         return self._about_hits(command)
@@ -119,6 +123,15 @@ class OperatorCommands:
             raise CommandRefused("the note is empty")
         self.bench.desk.write(NoteAdded(words))
         return f"noted: {words}"
+
+    def _set(self, name: str, value: float) -> str:
+        if self.bench.hardware_trigger:
+            raise CommandRefused("the device triggers; its settings are the plan's")
+        proposal = self.trigger.change(name, value)
+        self.bench.desk.write(
+            SettingProposed(proposal.name, proposal.value, proposal.reason)
+        )
+        return f"{name} is {value:.4g} from now on"
 
     def _see(self) -> str:
         count = self.bench.desk.warned

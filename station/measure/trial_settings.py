@@ -21,7 +21,7 @@ _HEADROOM = 2.0
 """Range over the largest value of a trial hit [-]."""
 _DROP_DB = 20.0
 """Fall of the force spectrum that ends the usable band [dB]."""
-_SHORTEST, _LONGEST = 0.25, 8.0
+SHORTEST, LONGEST = 0.25, 8.0
 """Of a block [s]."""
 
 
@@ -91,9 +91,9 @@ def propose_settings(
         ),
         Proposal(
             "decay_rate_per_s",
-            0.0 if length < _LONGEST else -np.log(0.01) / _LONGEST,
+            0.0 if length < LONGEST else -np.log(0.01) / LONGEST,
             "no exponential window: the response dies within the block"
-            if length < _LONGEST
+            if length < LONGEST
             else "an exponential window to 1 %: the response outlasts the block",
         ),
         Proposal(
@@ -115,7 +115,7 @@ def _length(cuts: Sequence[CutHit], row: int, rate: float) -> tuple[float, str]:
         for i, samples in enumerate(cut.samples):
             if i != row:
                 longest = max(longest, _decay(samples, cut.trigger, rate))
-    length = float(np.clip(np.ceil(1.2 * longest * 20) / 20, _SHORTEST, _LONGEST))
+    length = float(np.clip(np.ceil(1.2 * longest * 20) / 20, SHORTEST, LONGEST))
     return length, (
         f"1.2 x {longest:.3g} s, in which the slowest response falls to "
         f"{100 * _DECAYED:g} % or into its noise"

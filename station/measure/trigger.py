@@ -6,18 +6,26 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.file_access.quoting import shown
 from jointbench.acquisition.ni.stream import HardwareTrigger
 from jointbench.acquisition.records.recordings import Channel, Hit, Quantity
-from jointbench.signal.hits.hit_verdicts import HitLimits
+from jointbench.signal.hits.hit_verdicts import HitLimits, noise_level
 from jointbench.signal.hits.live_hits import CutHit, HitCutter, judge_cut
 from jointbench.station.measure.trial_settings import (
+    LONGEST,
+    SHORTEST,
     Proposal,
     propose_settings,
     propose_trigger,
 )
 from jointbench.station.schemas.plan_model import HitsTable
+from jointbench.station.session_events.command_queue import CommandRefused
 
 LISTEN = 0.3  # [s] quiet time in which the noise of the hammer is measured
+_LEAST_TRIGGER = 5.0
+"""Least trigger level in standard deviations of the noise; below, noise fires [-]."""
+_MOST_TRIGGER = 0.5
+"""Largest trigger level over the range of the hammer [-]."""
 _ROOM = 32  # samples that a device's own idea of the edge may differ from ours
 TRIAL_LENGTH = 2.0  # [s] block of a trial hit where the plan names none
 
@@ -35,6 +43,7 @@ class TriggerWatch:
         self._quiet: list[FloatArray] = []
         self._cutter: HitCutter | None = None
         self._trigger = Proposal("trigger_n", hits.trigger or 0.0, "of the plan")
+        self._changed: set[str] = set()
 
     @property
     def armed(self) -> bool:
@@ -116,8 +125,55 @@ class TriggerWatch:
             trial, self._channels, sample_rate=self._rate, trigger=self._trigger
         )
         values = {proposal.name: proposal.value for proposal in proposals}
-        if self._cutter is not None and self._hits.trigger is None:
+        if self._cutter is not None and self._is_open("trigger_n", self._hits.trigger):
             self._cutter.level = values["trigger_n"]
-        if self._cutter is not None and self._hits.length is None:
+        if self._cutter is not None and self._is_open("length_s", self._hits.length):
             self._cutter.after = round(values["length_s"] * self._rate)
         return proposals
+
+    def change(self, name: str, value: float) -> Proposal:
+        """Give a setting another value from now on.
+
+        Args:
+            name: ``"trigger_n"`` or ``"length_s"``.
+            value: [N] or [s].
+
+        Returns:
+            The setting as it is now.
+
+        Raises:
+            CommandRefused: there is no such setting, or no such value.
+        """
+        cutter = self._cutter
+        if cutter is None:
+            raise CommandRefused("the noise of the hammer is being measured; wait")
+        least, most = self._limits(name)
+        if not least <= value <= most:
+            raise CommandRefused(
+                f"{name} is between {least:.4g} and {most:.4g}, not {value:.4g}"
+            )
+        if name == "trigger_n":
+            cutter.level = value
+        else:
+            cutter.after = round(value * self._rate)
+        self._changed.add(name)
+        return Proposal(name, value, "set by the operator")
+
+    def _is_open(self, name: str, planned: float | None) -> bool:
+        return planned is None and name not in self._changed
+
+    def _limits(self, name: str) -> tuple[float, float]:
+        """Return the least and the largest value of a setting.
+
+        Raises:
+            CommandRefused: there is no such setting.
+        """
+        if name == "length_s":
+            return SHORTEST, LONGEST
+        if name != "trigger_n":
+            raise CommandRefused(
+                f"{shown(name)} cannot be set; trigger_n and length_s can"
+            )
+        quiet = noise_level(np.concatenate(self._quiet))
+        largest = self._channels[self._row].range or np.inf
+        return _LEAST_TRIGGER * quiet, _MOST_TRIGGER * largest

@@ -11,6 +11,7 @@ from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import shown
 from jointbench.station.session_events.flow_commands import (
     AddNote,
+    ChangeSetting,
     ContinueSession,
     PauseSession,
     QuitSession,
@@ -36,6 +37,7 @@ Command = (
     | PauseSession
     | ContinueSession
     | SeeWarnings
+    | ChangeSetting
     | QuitSession
 )
 _KINDS: Mapping[str, type[Command]] = {
@@ -43,6 +45,7 @@ _KINDS: Mapping[str, type[Command]] = {
     for kind in (
         *(RejectHit, AcceptHit, UndoVerdict, RepeatPoint, NextPoint, GoToPoint),
         *(AddNote, PauseSession, ContinueSession, SeeWarnings, QuitSession),
+        ChangeSetting,
     )
 }
 MOST_CHARACTERS = 500
@@ -65,13 +68,15 @@ def command_from_json(content: Mapping[str, Any]) -> Command:
     given = {name: value for name, value in content.items() if name != "command"}
     hints = get_type_hints(kind)
     known = {field.name: field for field in fields(kind)}
-    for name, value in given.items():
+    for name, value in tuple(given.items()):
         if name not in known:
             raise FormatError(
                 f"command {kind.kind!r} has no argument {shown(name)}; it has "
                 f"{', '.join(known) or 'none'}"
             )
         _require_type(kind.kind, name, value, hints[name])
+        if hints[name] is float:
+            given[name] = float(value)
     for name, field in known.items():
         if field.default is MISSING and name not in given:
             raise FormatError(f"command {kind.kind!r} needs its argument {name!r}")
@@ -82,7 +87,7 @@ def typed_command(line: str) -> Command:
     """Return the command that an operator typed.
 
     Args:
-        line: ``reject 17``, ``accept``, ``go 4``, ``note text``, ``quit`` and so on.
+        line: ``reject 17``, ``go 4``, ``note text``, ``set trigger_n 8``, and so on.
 
     Raises:
         FormatError: it is none; the message states what is.
@@ -91,6 +96,8 @@ def typed_command(line: str) -> Command:
     kind, rest = _kind(word.lower()), rest.strip()
     if kind is QuitSession and rest in {"", "yes"}:
         return QuitSession(confirmed=rest == "yes")
+    if kind is ChangeSetting:
+        return _typed_setting(rest)
     names = [field.name for field in fields(kind)]
     if not rest:
         return command_from_json({"command": kind.kind})
@@ -107,6 +114,17 @@ def typed_command(line: str) -> Command:
     return command_from_json({"command": kind.kind, names[0]: value})
 
 
+def _typed_setting(rest: str) -> ChangeSetting:
+    name, _, number = rest.partition(" ")
+    try:
+        return ChangeSetting(name, float(number))
+    except ValueError:
+        raise FormatError(
+            f"'set' takes a name and a number, not {shown(rest)}; for example "
+            "'set trigger_n 8'"
+        ) from None
+
+
 def _kind(word: str) -> type[Command]:
     found = _KINDS.get(word)
     if found is None:
@@ -118,6 +136,8 @@ def _kind(word: str) -> type[Command]:
 
 def _require_type(kind: str, name: str, value: object, wanted: Any) -> None:
     allowed = getattr(wanted, "__args__", (wanted,))
+    if type(value) is int and float in allowed:  # JSON has one kind of number
+        return
     if type(value) not in allowed:
         words = " or ".join(t.__name__ for t in allowed if t is not NoneType)
         raise FormatError(

@@ -48,3 +48,17 @@ class QuitSession:
 
     kind: ClassVar[str] = "quit"
     confirmed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeSetting:
+    """Give a setting another value from now on.
+
+    Attributes:
+        name: with its unit: ``"trigger_n"`` or ``"length_s"``.
+        value: in that unit.
+    """
+
+    kind: ClassVar[str] = "set"
+    name: str
+    value: float

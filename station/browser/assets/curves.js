@@ -25,8 +25,9 @@ const TITLE = "600 13px system-ui, sans-serif";
  * @param {HTMLElement} parent
  * @param {{
  *   x: string, y: string, curves: Curve[], height?: number, label: string,
- *   xLog?: boolean, yRange?: [number, number], hooks?: any,
- * }} given names of the axes with units; `label` is read by screen readers
+ *   xLog?: boolean, xRoom?: number, yRange?: [number, number], hooks?: any,
+ * }} given names of the axes with units; `label` is read by screen readers; `xRoom` is
+ *   room on the right, over the width of the data
  * @returns {CurvePlot}
  */
 export function curvePlot(parent, given) {
@@ -39,7 +40,7 @@ export function curvePlot(parent, given) {
   parent.setAttribute("aria-label", given.label);
 
   const axis = (/** @type {string} */ label) => ({
-    label, font: FONT, labelFont: TITLE, labelSize: 20, size: 46,
+    label, font: FONT, labelFont: TITLE, labelSize: 20, size: 56,
     stroke: () => colour("soft"),
     grid: { stroke: () => colour("grid"), width: 1 },
     ticks: { stroke: () => colour("line"), width: 1, size: 5 },
@@ -52,7 +53,12 @@ export function curvePlot(parent, given) {
       legend: { show: false },
       cursor: { y: false, points: { show: false } },
       scales: {
-        x: { time: false, ...(given.xLog ? { distr: 3 } : {}) },
+        x: {
+          time: false,
+          ...(given.xLog ? { distr: 3 } : {}),
+          ...(given.xRoom ? { range: (/** @type {any} */ _, /** @type {number} */ low, /** @type {number} */ high) =>
+            [low, high + (high - low) * (given.xRoom ?? 0)] } : {}),
+        },
         y: given.yRange ? { range: given.yRange } : {},
       },
       axes: [{ ...axis(given.x), size: 34 }, axis(given.y)],

@@ -16,7 +16,7 @@ export class HitPlots {
     /** @type {Record<string, string>} */
     this.units = {};
     this.pulseBox = box("Force pulse");
-    this.spectrumBox = box("Force spectrum");
+    this.spectrumBox = box("Force spectrum re its maximum");
     this.responseBox = box("Response");
     this.frfBox = box("FRF");
     this.coherenceBox = box("Coherence");
@@ -29,7 +29,7 @@ export class HitPlots {
     const one = (/** @type {string} */ name) => [{ name, colour: "curve-1", width: 2 }];
     this.plots = {
       pulse: make(plotOf(this.pulseBox), { x: "time after the trigger [ms]", y: "force [N]", curves: one("force"), label: "Force pulses of the hits at this point over time" }),
-      spectrum: make(plotOf(this.spectrumBox), { x: "frequency [Hz]", y: "force [dB re its maximum]", yRange: [-60, 3], curves: one("force"), label: "Force spectra of the hits at this point" }),
+      spectrum: make(plotOf(this.spectrumBox), { x: "frequency [Hz]", y: "force [dB]", yRange: [-60, 3], curves: one("force"), label: "Force spectra of the hits at this point" }),
       response: make(plotOf(this.responseBox), { x: "time after the trigger [ms]", y: "response", curves: one("response"), label: "Responses to the hits at this point over time" }),
       frf: make(plotOf(this.frfBox), { x: "frequency [Hz]", y: "FRF [dB re 1 SI unit]", curves: one("FRF"), label: "Magnitude of the averaged FRF" }),
       coherence: make(plotOf(this.coherenceBox), { x: "frequency [Hz]", y: "coherence [-]", yRange: [0, 1.02], curves: one("coherence"), label: "Coherence of the averaged FRF" }),
@@ -45,7 +45,7 @@ export class HitPlots {
     const average = state.average;
     const curve = average?.frf?.[name] ?? [];
     const coherence = average?.coherence?.[name] ?? [];
-    title(this.frfBox, name ? `FRF of ${name}${average?.good ? `, average of ${average.good} hit${average.good > 1 ? "s" : ""}` : ""}` : "FRF");
+    title(this.frfBox, name ? `FRF of ${name}${curve.length && average?.good ? `, average of ${average.good} hit${average.good > 1 ? "s" : ""}` : ""}` : "FRF");
     const mean = average?.mean_coherence;
     title(this.coherenceBox, name ? `Coherence of ${name}${mean == null ? "" : `, mean over band and channels ${shown(mean, 3)}`}` : "Coherence");
     const [low, high] = average?.band?.length ? average.band : [0, 1];
@@ -66,7 +66,7 @@ export class HitPlots {
     const condition = hit?.condition ?? "";
     if (condition !== this.condition) this.pictures = [];
     this.condition = condition;
-    this.units = Object.fromEntries(state.channels.map((/** @type {any} */ c) => [c.name, c.unit]));
+    this.units = Object.fromEntries(state.channels.map((/** @type {any} */ c) => [c.name, c.si]));
     this.pictures = this.pictures.filter((one) => one.hit !== picture.hit);
     this.pictures.push({ ...picture, good: hit?.verdict === "ok" || hit?.word === "trial" });
     this.pictures = this.pictures.slice(-OVERLAID);
@@ -80,7 +80,7 @@ export class HitPlots {
     if (!list.length) return;
     const count = list.length > 1 ? `, ${list.length} hits of this point` : "";
     title(this.pulseBox, `Force pulse${count}`);
-    title(this.spectrumBox, `Force spectrum${count}`);
+    title(this.spectrumBox, `Force spectrum re its maximum${count}`);
     title(this.responseBox, `Response of ${name} [${this.units[name] ?? ""}]${count}`);
     overlay(this.plots.pulse, list, (one) => one.pulse);
     overlay(this.plots.spectrum, list, (one) => one.spectrum);

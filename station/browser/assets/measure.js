@@ -137,10 +137,11 @@ function trials() {
 function showBought() {
   const gain = state.gain;
   const hit = state.average?.hit;
-  bought.hidden = !gain || gain.hit !== hit || state.on_trial;
+  const last = state.hits[state.hits.length - 1];
+  bought.hidden = !gain || gain.hit !== hit || last?.verdict !== "ok";
   if (bought.hidden) return;
-  const half = (/** @type {number} */ value) => shown(value, 2);
-  const percent = (/** @type {number} */ value) => `${shown(100 * value, 2)} %`;
+  const half = (/** @type {number} */ value) => plain(value);
+  const percent = (/** @type {number} */ value) => `${plain(100 * value)} %`;
   fill(
     bought,
     el("h2", {}, `What hit ${gain.hit + 1} bought, and what ${gain.more} more would`),
@@ -148,7 +149,7 @@ function showBought() {
       el("thead", {}, el("tr", {},
         ...["resonance", "sd of frequency", `with ${gain.more} more`, "sd of damping", `with ${gain.more} more`]
           .map((name) => el("th", { scope: "col" }, name)))),
-      el("tbody", {}, ...gain.peaks.slice(0, 5).map((/** @type {any} */ peak) => el("tr", {},
+      el("tbody", {}, ...gain.peaks.slice(0, 4).map((/** @type {any} */ peak) => el("tr", {},
         el("td", {}, `${shown(peak.frequency, 5)} Hz`),
         el("td", {}, `${fell(peak.frequency_sd_before, peak.frequency_sd, (v) => `${half(v)} Hz`)}`),
         el("td", {}, `${half(peak.frequency_sd_after)} Hz`),
@@ -165,6 +166,11 @@ function showBought() {
  */
 function fell(before, now, name) {
   return before === null ? name(now) : `${name(before)} → ${name(now)}`;
+}
+
+/** @param {number} value an uncertainty, two digits */
+function plain(value) {
+  return value > 0 && value < 0.1 ? value.toFixed(Math.min(7, 1 - Math.floor(Math.log10(value)))) : shown(value, 2);
 }
 
 function responses() {

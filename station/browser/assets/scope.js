@@ -17,7 +17,7 @@ export class Scope {
     this.perBin = 0;
     this.rate = 0;
     this.window = 2;
-    /** @type {{name: string, unit: string, range: number | null, quantity: string}[]} */
+    /** @type {{name: string, si: string, range: number | null, quantity: string}[]} */
     this.channels = [];
     /** @type {Float32Array[]} per channel, smallest and largest in turn, as a ring */
     this.rings = [];
@@ -171,7 +171,7 @@ export class Scope {
       pen.fillRect(at.left + (begin + bin) * step, top, Math.max(step, 1), Math.max(1, bottom - top));
     }
     const known = this.channels[channel];
-    const unit = known?.unit ?? "";
+    const unit = known?.si ?? "";
     pen.fillStyle = colour("ink");
     pen.textAlign = "left";
     pen.fillText(known?.name ?? "", at.left, at.top + 12);

@@ -75,7 +75,7 @@ def bench_part(
         return JSONResponse(geometry)
 
     return ScreenPart(
-        pages=(MEASURE,),
+        pages=(SETUP, MEASURE),
         routes=(
             Route("/bench/command", command, methods=["POST"]),
             Route("/bench/state", state),

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.acquisition.records.recordings import Quantity
 from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.follow_recording import (
     RecordingTail,
@@ -30,6 +31,16 @@ WINDOW = 2.0
 """Time that the live view of the signals shows [s]."""
 _BINS = 800  # of that time
 _PICTURES = 200  # of hits that are kept
+_STORED_UNIT = {
+    Quantity.FORCE.value: "N",
+    Quantity.ACCELERATION.value: "m/s²",
+    Quantity.VELOCITY.value: "m/s",
+    Quantity.DISPLACEMENT.value: "m",
+    Quantity.PRESSURE.value: "Pa",
+    Quantity.VOLTAGE.value: "V",
+    Quantity.TEMPERATURE.value: "°C",
+    Quantity.TACHO.value: "V",
+}
 _DISK_EVERY = 5.0  # [s] between looks at the disk
 
 
@@ -93,7 +104,8 @@ class SessionFeed:
             "free": self._room(),
             "file": str(self.path),
             "window": WINDOW,
-            "channels": self.meta.get("channels", []),
+            "channels": self._channels(),
+            "notes_of_plan": self.meta.get("notes", ""),
             "sensors": self.sensors,
         }
 
@@ -195,6 +207,13 @@ class SessionFeed:
                 )
         while len(self._pictures) > _PICTURES:
             self._pictures.popitem(last=False)
+
+    def _channels(self) -> list[dict[str, Any]]:
+        """Return the channels, each with the unit that its samples are stored in."""
+        return [
+            {**row, "si": _STORED_UNIT.get(str(row["quantity"]), "")}
+            for row in self.meta.get("channels", [])
+        ]
 
     def _room(self) -> int | None:
         looked, free = self._free

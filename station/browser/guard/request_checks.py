@@ -36,7 +36,7 @@ class Asking:
 
 
 @dataclass(frozen=True, slots=True)
-class Refusal:
+class RequestRefused:
     """Why a request is refused.
 
     Attributes:
@@ -48,7 +48,7 @@ class Refusal:
     words: str
 
 
-def refusal(asking: Asking, access: ScreenAccess) -> Refusal | None:
+def refusal(asking: Asking, access: ScreenAccess) -> RequestRefused | None:
     """Return why a request is refused; None for a good one.
 
     Args:
@@ -57,15 +57,15 @@ def refusal(asking: Asking, access: ScreenAccess) -> Refusal | None:
     """
     headers = asking.headers
     if headers.get("host") not in access.hosts:
-        return Refusal(421, "this screen has another address")
+        return RequestRefused(421, "this screen has another address")
     if headers.get("sec-fetch-site", "none") not in _OWN_SITES:
-        return Refusal(403, "a request from another site")
+        return RequestRefused(403, "a request from another site")
     by_cookie = access.opens(asking.cookies.get(access.cookie))
     reads = asking.method in _READS
     if not by_cookie and not (reads and access.opens(asking.token)):
-        return Refusal(
+        return RequestRefused(
             401, "no access: open the link that the command printed, with its token"
         )
     if not reads and headers.get("origin") not in access.origins:
-        return Refusal(403, "a request from another origin")
+        return RequestRefused(403, "a request from another origin")
     return None

@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from jointbench.station.browser.guard.page_headers import page_headers
-from jointbench.station.browser.guard.request_checks import Asking, Refusal, refusal
+from jointbench.station.browser.guard.request_checks import (
+    Asking,
+    RequestRefused,
+    refusal,
+)
 from jointbench.station.browser.guard.screen_access import TOKEN, ScreenAccess
 
 if TYPE_CHECKING:
@@ -60,7 +64,11 @@ class ScreenGuard:
             await self._app(scope, receive, answering)
 
     async def _socket(
-        self, refused: Refusal | None, scope: "Scope", receive: "Receive", send: "Send"
+        self,
+        refused: RequestRefused | None,
+        scope: "Scope",
+        receive: "Receive",
+        send: "Send",
     ) -> None:
         if refused is None:
             await self._app(scope, receive, send)

@@ -43,6 +43,7 @@ from jointbench.station.session_events.command_codec import Command
 from jointbench.station.session_events.event_codec import Stamped, from_log
 from jointbench.station.session_events.flow_commands import (
     AddNote,
+    ChangeSetting,
     ContinueSession,
     PauseSession,
     QuitSession,
@@ -311,6 +312,26 @@ def test_the_operator_goes_to_a_point_notes_and_quits_only_when_sure(
     assert [dict(s.detail)["words"] for s in steps if s.name == "note"] == [
         "bolt 2 rubs"
     ]
+
+
+def test_the_operator_sets_trigger_and_length_within_their_limits(
+    tmp_path: Path,
+) -> None:
+    """A trigger in the noise is refused; a longer record holds from the next hit on."""
+    said = (
+        ChangeSetting("trigger_n", 1e-6),
+        ChangeSetting("band_hz", 100.0),
+        ChangeSetting("trigger_n", 7.0),
+        ChangeSetting("length_s", 0.75),
+    )
+    _, operator = session(tmp_path, {1: said})
+    first, *_, last = stored(tmp_path)
+    heard = "\n".join(operator.heard)
+    assert "trigger_n is between" in heard
+    assert "'band_hz' cannot be set" in heard
+    assert "trigger_n is 7 from now on" in heard
+    assert last.stop - last.trigger == round(0.75 * 12_800)
+    assert first.stop - first.trigger < last.stop - last.trigger
 
 
 def test_hits_during_a_pause_are_ignored_and_never_found_again(tmp_path: Path) -> None:

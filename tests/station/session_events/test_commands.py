@@ -15,6 +15,7 @@ from jointbench.station.session_events.command_codec import (
 from jointbench.station.session_events.command_queue import Answer, CommandQueue
 from jointbench.station.session_events.flow_commands import (
     AddNote,
+    ChangeSetting,
     ContinueSession,
     PauseSession,
     QuitSession,
@@ -43,6 +44,7 @@ COMMANDS: dict[str, Command] = {
     "seen": SeeWarnings(),
     "quit": QuitSession(),
     "quit yes": QuitSession(confirmed=True),
+    "set trigger_n 8": ChangeSetting("trigger_n", 8.0),
 }
 
 
@@ -66,6 +68,7 @@ def test_a_command_goes_through_words_and_json_and_back(typed: str) -> None:
         ({"command": "undo", "hit": 1}, "it has none"),
         ({"command": "go"}, "needs its argument 'point'"),
         ({"command": "note", "text": "x" * 501}, "at most 500"),
+        ({"command": "set", "name": "trigger_n", "value": "8"}, "it is float"),
     ],
 )
 def test_json_that_is_no_command_is_refused_in_one_line(
@@ -76,7 +79,9 @@ def test_json_that_is_no_command_is_refused_in_one_line(
         command_from_json(content)
 
 
-@pytest.mark.parametrize("typed", ["", "dance", "reject all", "go", "pause now"])
+@pytest.mark.parametrize(
+    "typed", ["", "dance", "reject all", "go", "pause now", "set trigger_n"]
+)
 def test_words_that_are_no_command_are_refused(typed: str) -> None:
     """Nothing is guessed."""
     with pytest.raises(FormatError):
