@@ -40,7 +40,10 @@ export class GeometryView {
   /** @param {any} state */
   show(state) {
     const marks = new Map();
+    const here = state.conditions.find((/** @type {any} */ one) => one.mark === "now");
     for (const one of state.conditions) {
+      // The points of the present torque and level; of all of them before and after.
+      if (here && (one.torque !== here.torque || one.level !== here.level)) continue;
       const known = marks.get(one.point);
       if (known === undefined || one.mark === "now" || (known === "done" && one.mark !== "done")) {
         if (known !== "now") marks.set(one.point, one.mark);
@@ -101,7 +104,7 @@ export class GeometryView {
       pen.fillText(name, at[0] + 12, at[1] - 8);
     }
     say(this.note, this.geometry
-      ? "green done, blue now, red incomplete, grey open; arrow keys or mouse turn it"
+      ? "green done, blue now, red incomplete, grey open; at the present torque; arrow keys or mouse turn it"
       : "green done, blue now, red incomplete, grey open; positions come from --geometry FILE");
   }
 

@@ -63,7 +63,7 @@ def _spectrum(force: FloatArray, edge: int, rate: float) -> list[list[float]]:
     first = max(0, edge - round(_BEFORE * rate))
     pulse = force[first : first + round(_SPECTRUM * rate)]
     size = np.abs(np.fft.rfft(pulse))
-    frequency = np.arange(size.size) * (rate / pulse.size)
+    frequency = np.arange(size.size, dtype=np.float64) * (rate / pulse.size)
     top = float(size.max())
     if top == 0.0:
         return [[], []]
