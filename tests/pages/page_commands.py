@@ -23,6 +23,7 @@ GENERATED = ROOT / "docs" / "command-line.md"
 """The page of first examples of the help, which has no comments."""
 OF_COMMANDS = {
     "agreement": "takes minutes",
+    "bench": "needs hardware",
     "demo": "takes minutes",
     "design": "takes minutes",
     "doctor": "needs hardware",

@@ -154,6 +154,7 @@ BANNED = (
         "report",
         fine=r"page of the doc\w+|(docs|memory|man|web|code) pages?|/pages",
         only=_CODE,
+        elsewhere=("station/browser/",),  # pages that a browser shows
     ),
     Banned(
         "rotten",

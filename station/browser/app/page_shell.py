@@ -10,7 +10,7 @@ from html import escape
 
 from jointbench.station.browser.app.screen_part import ScreenPage
 
-_SHEETS = ("palette.css", "screen.css", "vendor/uPlot.min.css")
+_STYLES = ("palette.css", "screen.css", "vendor/uPlot.min.css")
 
 
 def page_shell(page: ScreenPage, pages: Sequence[ScreenPage]) -> str:
@@ -20,9 +20,9 @@ def page_shell(page: ScreenPage, pages: Sequence[ScreenPage]) -> str:
         page: to be shown.
         pages: all pages of the navigation.
     """
-    sheets = "".join(
-        f'<link rel="stylesheet" href="/assets/{escape(sheet)}">\n'
-        for sheet in (*_SHEETS, *page.styles)
+    styles = "".join(
+        f'<link rel="stylesheet" href="/assets/{escape(style)}">\n'
+        for style in (*_STYLES, *page.styles)
     )
     links = "".join(_link(one, current=one == page) for one in pages)
     return f"""<!doctype html>
@@ -33,7 +33,7 @@ def page_shell(page: ScreenPage, pages: Sequence[ScreenPage]) -> str:
 <meta name="color-scheme" content="light dark">
 <title>{escape(page.title)} - jointbench</title>
 <link rel="icon" href="/assets/icon.svg" type="image/svg+xml">
-{sheets}<script type="module" src="/assets/{escape(page.script)}"></script>
+{styles}<script type="module" src="/assets/{escape(page.script)}"></script>
 </head>
 <body>
 <a class="skip" href="#content">Skip to the content</a>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The application behind a screen: pages, files and the routes of its parts."""
+"""The application of a screen: pages, files and the routes of its parts."""
 
 from collections.abc import AsyncIterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager

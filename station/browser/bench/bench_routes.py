@@ -68,7 +68,7 @@ def bench_part(
     async def hit(request: "Request") -> "Response":
         picture = feed.picture(request.path_params["number"])
         if picture is None:
-            return PlainTextResponse("its samples are not at hand", 404)
+            return PlainTextResponse("its samples are not available", 404)
         return JSONResponse(picture)
 
     async def places(request: "Request") -> "Response":

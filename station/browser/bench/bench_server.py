@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The process that serves the screen of a session; it may die without a hit lost.
 
-It reads the session file as `watch` does, and hands commands to the measuring program.
+It reads the session file as `watch` does, and passes commands to the measuring program.
 """
 
 import asyncio
@@ -57,7 +57,7 @@ def run_bench_server(
 
 
 class _CommandDesk:
-    """Hands commands over, and waits for their answers in the log."""
+    """Passes commands on, and waits for their answers in the log."""
 
     def __init__(self, link: Connection, feed: SessionFeed) -> None:
         self.feed = feed

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
 _EVERY = 1.0
-"""Longest time between two states, whose clocks go on [s]."""
+"""Longest time between two states, whose clocks change [s]."""
 _FRAME = 0.045
 """Least time between two sets of bins [s]; more would not be seen."""
 
@@ -56,11 +56,11 @@ class LiveSocket:
 
     async def _send_all(self, socket: "WebSocket", leaving: asyncio.Task[None]) -> None:
         feed, loop = self._feed, asyncio.get_running_loop()
-        shown, told, drawn, sent = -2, 0.0, 0.0, 0
+        shown, stated, drawn, sent = -2, 0.0, 0.0, 0
         while not leaving.done():
             now = loop.time()
-            if feed.state.last != shown or now - told > _EVERY:
-                shown, told = feed.state.last, now
+            if feed.state.last != shown or now - stated > _EVERY:
+                shown, stated = feed.state.last, now
                 await socket.send_json({"state": feed.snapshot()})
             ring = feed.ring
             if ring is not None and ring.past > sent and now - drawn >= _FRAME:

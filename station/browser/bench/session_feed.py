@@ -110,7 +110,7 @@ class SessionFeed:
         }
 
     def picture(self, number: int) -> dict[str, Any] | None:
-        """Return a hit for a screen; None where its samples are not at hand.
+        """Return a hit for a screen; None where its samples are not available.
 
         Args:
             number: of the hit, from 0.
@@ -140,7 +140,7 @@ class SessionFeed:
         self._news.clear()
 
     def _open(self) -> bool:
-        """Open the recording, or read a finished one; return whether to go on."""
+        """Open the recording, or read a finished one; return whether it is open."""
         self._tail = recording_tail(self.path)
         if self._tail is not None:
             self.meta = self._tail.meta
@@ -167,7 +167,7 @@ class SessionFeed:
         return fresh or bool(entries)
 
     def _take(self, entries: tuple[dict[str, Any], ...]) -> None:
-        """Take entries of the log; a hit is drawn while its samples are at hand."""
+        """Take entries of the log; a hit is drawn while its samples are available."""
         first, self._entries = self._entries, self._entries + len(entries)
         for entry in entries:
             if entry.get("kind") == "sensor":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Headers of every answer: what the browser may load, and whom it may tell."""
+"""Headers of every answer: what the browser may load, and from where."""
 
 from collections.abc import Mapping
 

@@ -6,7 +6,7 @@ server can point a foreign name at this computer. Both are seen in the headers t
 browser itself writes.
 
 Source:
-    OWASP Cross-Site Request Forgery Prevention Cheat Sheet; W3C Fetch Metadata.
+    OWASP, Cross-Site Request Forgery Prevention; W3C, Fetch Metadata.
 """
 
 from collections.abc import Mapping

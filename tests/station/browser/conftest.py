@@ -17,7 +17,7 @@ from jointbench.station.browser.guard.screen_access import ScreenAccess
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-# Without a sandbox, as root in a container needs it, and without a word to anybody.
+# Without a sandbox, as root in a container needs it, and without requests of its own.
 CHROMIUM_FLAGS = (
     "--no-sandbox",
     "--disable-gpu",

@@ -135,7 +135,7 @@ def test_a_session_by_keys_alone_survives_reload_and_loss_of_its_server(
     """Three points, two torques, one overload, one double hit, one hit rejected.
 
     Neither bad hit is averaged; after a reload, and after the server was killed, the
-    screen shows the same session, which went on meanwhile.
+    screen shows the same session, which continued meanwhile.
     """
     with bench(tmp_path, "--json", str(tmp_path / "s.json")) as running:
         with opened(chromium, running.link) as page:

@@ -80,7 +80,7 @@ def struck(number: int) -> HitJudged:
 
 
 @pytest.mark.parametrize(("second", "before"), [("A", 0.04), ("B", None)])
-def test_what_a_hit_bought_is_told_within_its_point_alone(
+def test_what_a_hit_bought_is_stated_within_its_point_alone(
     second: str, before: float | None
 ) -> None:
     """0.04 Hz before and 0.03 Hz after the hit; at another point nothing compares."""
