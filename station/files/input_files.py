@@ -65,6 +65,17 @@ def parse_rate(text: str | float | None) -> float | None:
     return value
 
 
+def parse_point(text: str) -> str:
+    """Read the name of a hit point as typed.
+
+    Raises:
+        UsageError: it is empty.
+    """
+    if not text.strip():
+        raise UsageError("--point is empty; give the name of the hit point, e.g. '1'")
+    return text.strip()
+
+
 def read_foreign(path: Path, options: SampleOptions) -> tuple[Recording | Surface, ...]:
     """Read one foreign file as hits or as a surface.
 

@@ -18,6 +18,7 @@ from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.station.files.input_files import (
     is_session_name,
+    parse_point,
     parse_rate,
     read_foreign,
     refuse_twice,
@@ -165,12 +166,12 @@ def open_measurement(
 
     Raises:
         BadData: a file cannot be read, or its units are missing.
-        UsageError: the same data twice.
+        UsageError: the same data twice, or an empty point.
     """
     paths = paths_of(files)
     require_texts(f"{HITS_EXAMPLE!r}", columns=columns, point=point)
     refuse_twice(paths)
-    options = SampleOptions(columns, point, rate=parse_rate(rate))
+    options = SampleOptions(columns, parse_point(point), rate=parse_rate(rate))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
     sessions: list[Session] = []
