@@ -118,8 +118,8 @@ def main() -> None:
     print(f"| memory | {cost.memory:.0f} MB | 500 MB |")
     print(f"| size of the index | {size:.1f} MB | |")
     print(
-        "\nThe command waits for no disk: it reads the index and the state of each file, "
-        "and writes one table. The files are links to one result; it opens none of them."
+        "\nThe command waits for no disk: it reads the index and the state of each "
+        "file, and writes one table. The files are links to one result; it opens none."
     )
 
 
