@@ -21,7 +21,7 @@ def require_whole_end(
 
     A cut number is a number: ``-0.000`` of ``-0.0004``. Only a file without a line end
     after its last row can be cut so, and only a column printed with one number of
-    digits shows it; without the zeros at the end of numbers nothing can be said.
+    digits shows it; where zeros at the end are left out it cannot be seen.
 
     Args:
         rows: texts of all rows, the last of which ends the file.

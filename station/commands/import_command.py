@@ -15,11 +15,11 @@ from jointbench.acquisition.session_file.overwrite_guard import require_replacea
 from jointbench.acquisition.session_file.store import write_session
 from jointbench.signal.hits.plausibility import plausibility_words
 from jointbench.station.files.input_files import (
-    parse_preload,
     read_foreign,
     refuse_twice,
 )
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.typed_values import parse_preload
 from jointbench.station.pipeline.roughness_words import caution_lines
 from jointbench.station.screen.terminal import console, table, working, write_json
 

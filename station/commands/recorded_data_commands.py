@@ -88,7 +88,7 @@ def import_command(
     """
     from jointbench.acquisition.formats.samples.sample_format import SampleOptions
     from jointbench.station.commands.import_command import ImportRequest, run_import
-    from jointbench.station.files.input_files import parse_point, parse_rate
+    from jointbench.station.files.typed_values import parse_point, parse_rate
 
     options = SampleOptions(columns, parse_point(point), full_scale, parse_rate(rate))
     if guess:
@@ -137,7 +137,7 @@ def modal_command(
         jointbench modal frf.txt --columns 'frequency:Hz,real:m/N,imaginary:m/N'
         jointbench modal spindle.h5 --output-only --band 30:500 --keep-sines
     """
-    from jointbench.station.files.input_files import parse_point, parse_rate
+    from jointbench.station.files.typed_values import parse_point, parse_rate
 
     point = parse_point(point)
     if output_only:

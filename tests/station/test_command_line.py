@@ -105,7 +105,7 @@ def test_a_damaged_table_is_refused(
 def test_swapped_columns_are_named_where_no_hit_is_accepted(
     refused: Refused, tmp_path: Path
 ) -> None:
-    """`modal` says what `import` says, not only that the hit is double."""
+    """`modal` names the cause as `import` does, not only the double hit."""
     path = hit_table(tmp_path / "hit.csv")
     line = refused("modal", path, "--columns", "time:s,acceleration:m/s^2,force:N")
     assert "are the columns swapped?" in line

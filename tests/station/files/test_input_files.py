@@ -12,8 +12,8 @@ from jointbench.station.files.archive_patterns import (
     result_files,
     session_files,
 )
-from jointbench.station.files.input_files import parse_point
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.files.typed_values import parse_point
 from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.schemas.recipe import Recipe
 
@@ -31,7 +31,7 @@ def test_a_copy_of_a_file_is_not_imported_as_a_second_hit(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("name", ["", " "])
 def test_an_empty_point_is_refused(name: str) -> None:
-    """Hits at no point could not be told from hits whose point is not known."""
+    """A hit at no point looks like one whose point is not known."""
     with pytest.raises(UsageError, match="give the name of the hit point"):
         parse_point(name)
 
@@ -64,8 +64,8 @@ def test_missing_heights_of_a_surface_are_stated_beside_its_verdict(
     """What is interpolated or left out is not passed over in silence."""
     heights = np.random.default_rng(3).normal(size=256).cumsum() * 0.1
     heights[100] = np.nan
-    path = tmp_path / "face.csv"
+    path = tmp_path / "part.csv"
     rows = [f"{0.5 * k},{z:.5f}" for k, z in enumerate(heights)]
     path.write_text("\n".join(["x [um],z [um]", *rows, ""]), encoding="ascii")
     remarks = examine_surface([path], without=frozenset(), progress=print)[1]
-    assert remarks[-1].startswith("face: 1 of 256 heights are missing")
+    assert remarks[-1].startswith("part: 1 of 256 heights are missing")
