@@ -54,7 +54,7 @@ def complete_lines(heights: FloatArray, valid: BoolArray) -> tuple[FloatArray, f
 
 
 def missing_words(surface: Surface) -> str:
-    """Return how many heights are missing and how a spectrum treats them; or "" for none.
+    """Return how many heights are missing, and what a spectrum does; empty for none.
 
     Args:
         surface: a profile or a map.
