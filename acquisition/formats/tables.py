@@ -21,6 +21,7 @@ from jointbench.acquisition.file_access.text_files import (
     read_bytes,
     text_lines,
 )
+from jointbench.acquisition.formats.table_end import require_whole_end
 from jointbench.acquisition.formats.table_rows import parse_rows, without_empty_tail
 from jointbench.acquisition.formats.table_start import (
     DELIMITER_NAMES,
@@ -171,6 +172,8 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     )
     rows = _with_points([lines[i] for i in numbers], numbers, start, path)
     values = parse_rows(rows, numbers, start, path)
+    if numbers[-1] == len(lines) - 1:
+        require_whole_end(rows, start.delimiter, len(lines), path)
     delimiter = DELIMITER_NAMES.get(start.delimiter, start.delimiter)
     return Table(
         path=path,

@@ -5,7 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from jointbench.station.results.processed_file import PROCESSED_SCHEMA
+from jointbench.station.results.result_rows import PROCESSED_SCHEMA
 
 
 def session(path: Path, *, shape: tuple[int, ...], dtype: str, chunks=None) -> None:

@@ -28,7 +28,8 @@ from jointbench.acquisition.formats.frfs.read_frfs import read_frfs
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.formats.universal_geometry import read_universal_geometry
 from jointbench.acquisition.records.recordings import Recording
-from jointbench.station.files.input_files import parse_rate, read_foreign
+from jointbench.station.files.input_files import read_foreign
+from jointbench.station.files.typed_values import parse_rate
 
 ALLOWED = 2e-6
 """Relative to the peak: universal files print six digits of single precision."""

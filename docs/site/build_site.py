@@ -200,7 +200,12 @@ def settings(docs: Path, out: Path) -> dict[str, object]:
         "theme": {
             "name": "material",
             "font": False,
-            "features": ["navigation.tabs", "navigation.top", "search.highlight"],
+            "features": [
+                "navigation.tabs",
+                "navigation.top",
+                "search.highlight",
+                "content.code.copy",
+            ],
             "palette": [{"scheme": "default", "primary": "blue grey"}],
         },
         # Not `offline`: its search without a server loads a script of others.

@@ -20,6 +20,9 @@ PULSE_SHARE = 0.03
 hammer's pulse of 5 ms in a record of 0.17 s; a decay of 1 % damping has 40 periods."""
 _RINGING_SHARE = 0.1
 """Share above which it is a decay, not a pulse [-]."""
+_LONGER = 5.0
+"""Times that a swinging force lasts longer than a pulse of a response, as no hit and
+answer do: a decay in a long record is below the share [-]."""
 _TENTH = 0.1
 _SWING = 0.3
 """Largest opposite peak of a pulse, of its peak [-]: beyond it, it swings."""
@@ -53,7 +56,12 @@ def plausibility_words(recordings: Sequence[Recording]) -> tuple[str, ...]:
         Each finding once, for the first recording that shows it; none where all is
         plausible or where there is no force.
     """
-    found = list(time_scale_words(recordings))
+    return (*time_scale_words(recordings), *channel_words(recordings))
+
+
+def channel_words(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Return what columns, signs and units make impossible, as `plausibility_words`."""
+    found: list[str] = []
     seen: set[str] = set()
     for recording in recordings:
         for kind, words in _findings(recording):
@@ -102,6 +110,13 @@ def points_down(values: FloatArray) -> bool:
     return bool(-plain.min(initial=0.0) > plain.max(initial=0.0) / _SWING)
 
 
+def _rings(force: FloatArray, pulse: FloatArray) -> bool:
+    """Return whether a force decays beside a pulse: long, or to both sides."""
+    share = active_share(force)
+    longer = share > _LONGER * active_share(pulse)
+    return share > _RINGING_SHARE or (longer and _swings(force))
+
+
 def _swings(values: FloatArray) -> bool:
     plain = values - np.median(values)
     ends = sorted((float(plain.max(initial=0.0)), float(-plain.min(initial=0.0))))
@@ -118,11 +133,13 @@ def _findings(recording: Recording) -> Iterator[tuple[str, str]]:
         for row, channel in enumerate(recording.channels)
         if channel.quantity is not Quantity.FORCE
     ]
-    pulses = [channel.name for channel, values in responses if is_pulse(values)]
-    if active_share(force) > _RINGING_SHARE and pulses:
+    pulses = [
+        (channel.name, values) for channel, values in responses if is_pulse(values)
+    ]
+    if pulses and _rings(force, pulses[0][1]):
         yield (
             "swapped",
-            f"{name!r} rings down as a response does and {pulses[0]!r} is a short "
+            f"{name!r} rings down as a response does and {pulses[0][0]!r} is a short "
             "pulse as a force is; are the columns swapped? Exchange force and "
             "response in --columns",
         )

@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.records.surfaces import Surface
 
 WHOLE_TAPER, RUN_TAPER = 0.1, 0.5
 """Share that is tapered at each end: of a complete line, and of a run between gaps,
@@ -50,6 +51,28 @@ def complete_lines(heights: FloatArray, valid: BoolArray) -> tuple[FloatArray, f
         for k in range(run.size // length)
     ]
     return np.array(pieces), RUN_TAPER
+
+
+def missing_words(surface: Surface) -> str:
+    """Return how many heights are missing, and what a spectrum does; empty for none.
+
+    Args:
+        surface: a profile or a map.
+    """
+    lost = int(np.count_nonzero(~surface.valid))
+    if not lost:
+        return ""
+    heights, valid = np.atleast_2d(surface.heights), np.atleast_2d(surface.valid)
+    count = len(valid)
+    lines = zip(heights, valid, strict=True)
+    cut = sum(filled_line(z, v) is None for z, v in lines)
+    if not cut:
+        how = "the gaps are short and interpolated"
+    elif 2 * cut <= count:
+        how = f"{cut} of {count} lines have long gaps and are left out of the spectrum"
+    else:
+        how = "the parts between long gaps are used"
+    return f"{lost} of {surface.valid.size} heights are missing; {how}"
 
 
 def filled_line(heights: FloatArray, valid: BoolArray) -> FloatArray | None:

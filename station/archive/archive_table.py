@@ -22,7 +22,7 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.station.files.output_paths import whole_file, write_text
 from jointbench.station.files.spreadsheet_text import escaped
 from jointbench.station.files.table_files import ExportColumn, ExportTable, write_mat
-from jointbench.station.results.processed_file import OF_EACH_ROW
+from jointbench.station.results.result_rows import OF_EACH_ROW
 from jointbench.station.results.results_read import (
     StoredResult,
     read_result,

@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.station.pipeline.stage_store import differing
-from jointbench.station.results.quantities import ResultQuantity
+from jointbench.station.results.result_rows import ResultQuantity
 from jointbench.station.results.results_read import StoredResult, without_copies
 
 MOVED = 2.0

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 
 from jointbench.station.archive.process_file import Outcome, State
-from jointbench.station.results.quantities import ResultQuantity
+from jointbench.station.results.result_rows import ResultQuantity
 from jointbench.station.schemas.recipe import Recipe, read_recipe
 from jointbench.station.schemas.stored_recipe import read_stored_recipe
 from jointbench.station.screen.value_text import with_sd

@@ -20,7 +20,7 @@ from typing import Any
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.text_files import file_size, read_bytes
 from jointbench.station.archive.file_mark import mark_of
-from jointbench.station.results.quantities import ResultQuantity
+from jointbench.station.results.result_rows import ResultQuantity
 from jointbench.station.results.results_read import FACTS, StoredResult, read_result
 
 INDEX_NAME = ".jointbench-results.jsonl"

@@ -14,8 +14,12 @@ from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.store import write_session
 from jointbench.signal.hits.plausibility import plausibility_words
-from jointbench.station.files.input_files import parse_preload, read_foreign
+from jointbench.station.files.input_files import (
+    read_foreign,
+    refuse_twice,
+)
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.typed_values import parse_preload
 from jointbench.station.pipeline.roughness_words import caution_lines
 from jointbench.station.screen.terminal import console, table, working, write_json
 
@@ -47,7 +51,7 @@ def run_import(files: Sequence[Path], out: Path, request: ImportRequest) -> Sess
 
     Raises:
         UsageError: the session exists, is being recorded, or the existing file is not
-            a session.
+            a session; the same data are given twice.
         BadData: a file cannot be read; then nothing is written.
     """
     preload, json_target = request.preload, request.json_target
@@ -58,6 +62,7 @@ def run_import(files: Sequence[Path], out: Path, request: ImportRequest) -> Sess
         check_outputs(files, [] if out.exists() else [out])
     if out.resolve() in {path.resolve() for path in files}:
         raise UsageError(f"'{out}' is an input file; write the session to another file")
+    refuse_twice(files)
     joint = None if preload is None else JointSetup(preload=parse_preload(preload))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []

@@ -5,12 +5,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from rich.text import Text
+
 from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.formats.frfs.frf_columns import TABLE_EXAMPLE
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.continuous_frf import estimate_continuous_frf
+from jointbench.signal.hits.plausibility import channel_words
 from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.input_files import is_session_name, read_recordings
 from jointbench.station.files.output_paths import check_outputs
@@ -105,6 +108,9 @@ def run_modal(
     target = out or _next_to_session(files)
     check_outputs(files, [target, universal, json_target])
     stored = _recordings(files, samples or SampleOptions())
+    doubts = () if all(map(is_session_name, files)) else channel_words(stored)
+    for words in doubts:
+        console(json_target).print(Text(f"warning: {words}"))
     shaken = shaker_runs(stored)
     if shaken:
         return _shaken_modes(shaken, files, settings, (target, universal, json_target))
@@ -123,7 +129,8 @@ def run_modal(
         contents.append(_give_out(chain, files, (own, shared, json_target)))
         chains.append(chain)
     content = join_pages([preload for preload, _ in groups], contents)
-    write_json(json_target, content | {"results": str(target or "")})
+    content |= {"results": str(target or ""), "import_warnings": list(doubts)}
+    write_json(json_target, content)
     return chains[0]
 
 

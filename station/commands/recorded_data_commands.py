@@ -88,9 +88,9 @@ def import_command(
     """
     from jointbench.acquisition.formats.samples.sample_format import SampleOptions
     from jointbench.station.commands.import_command import ImportRequest, run_import
-    from jointbench.station.files.input_files import parse_rate
+    from jointbench.station.files.typed_values import parse_point, parse_rate
 
-    options = SampleOptions(columns, point, full_scale, parse_rate(rate))
+    options = SampleOptions(columns, parse_point(point), full_scale, parse_rate(rate))
     if guess:
         from jointbench.station.guess.run_guess import GuessRequest, run_guess
 
@@ -137,8 +137,9 @@ def modal_command(
         jointbench modal frf.txt --columns 'frequency:Hz,real:m/N,imaginary:m/N'
         jointbench modal spindle.h5 --output-only --band 30:500 --keep-sines
     """
-    from jointbench.station.files.input_files import parse_rate
+    from jointbench.station.files.typed_values import parse_point, parse_rate
 
+    point = parse_point(point)
     if output_only:
         from jointbench.station.commands.output_only_command import run_output_only
         from jointbench.station.pipeline.modal_options import parse_band

@@ -48,6 +48,7 @@ def archive_files(patterns: Sequence[str], endings: Sequence[str]) -> tuple[Path
     for pattern in patterns:
         here = sorted(_named(pattern, endings), key=lambda one: (one.is_symlink(), one))
         if not here:
+            _require_place(pattern)
             raise UsageError(
                 f"{shown(pattern)} names no session or results; quote the pattern, for "
                 "example 'archive/**/*.h5'"
@@ -62,6 +63,7 @@ def _files(patterns: Sequence[str], *, results: bool) -> tuple[Path, ...]:
     for pattern in patterns:
         here = [path for path in _named(pattern) if _is_meant(path, pattern, results)]
         if not here:
+            _require_place(pattern)
             what = "results (*.results.h5)" if results else "session (*.h5)"
             remedy = "; 'jointbench reprocess' writes results" if results else ""
             raise UsageError(
@@ -71,6 +73,17 @@ def _files(patterns: Sequence[str], *, results: bool) -> tuple[Path, ...]:
         for path in sorted(here, key=lambda one: (one.is_symlink(), one)):
             found.setdefault(path.resolve(), path)
     return tuple(sorted(found.values()))
+
+
+def _require_place(pattern: str) -> None:
+    """Raise `UsageError` where a name, or the folder of a pattern, is not there."""
+    if not glob.has_magic(pattern) and not Path(pattern).exists():
+        raise UsageError(f"there is no file or folder {shown(pattern)}; check the path")
+    folder = _beginning(pattern)
+    if not folder.exists():
+        raise UsageError(
+            f"{shown(pattern)}: there is no folder {shown(str(folder))}; check the path"
+        )
 
 
 def _is_meant(path: Path, pattern: str, results: bool) -> bool:

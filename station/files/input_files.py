@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Input files of a command: sessions, hit tables and surfaces, by content."""
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
-from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.formats.column_roles import (
     QUANTITY_NAMES,
@@ -27,42 +25,9 @@ from jointbench.acquisition.session_file.store import read_session
 SESSION_SUFFIXES = (".h5", ".hdf5")
 
 
-def parse_preload(text: str) -> float:
-    """Read a preload as typed, for example ``"4 kN"``; in newton.
-
-    Raises:
-        UnitError: it has no unit of force.
-        UsageError: it is not above zero.
-    """
-    value = parse_value(text, "force")
-    if value <= 0:
-        raise UsageError(f"--preload is {text!r}; it must be above zero, e.g. '4 kN'")
-    return value
-
-
 def is_session_name(path: Path) -> bool:
     """Return whether a path is named like an HDF5 file."""
     return path.suffix.lower() in SESSION_SUFFIXES
-
-
-def parse_rate(text: str | float | None) -> float | None:
-    """Read a sample rate as typed, for example ``"25.6 kHz"``; in hertz.
-
-    Args:
-        text: with a unit; a number is in hertz; None for none.
-
-    Raises:
-        UnitError: it has no unit of frequency.
-        UsageError: it is not above zero.
-    """
-    if text is None:
-        return None
-    if not isinstance(text, str | int | float):
-        raise UsageError(f"the rate is {text!r}; give it in Hz, or as '25.6 kHz'")
-    value = parse_value(text, "frequency") if isinstance(text, str) else float(text)
-    if not 0.0 < value < math.inf:
-        raise UsageError(f"--rate is {text!r}; it must be above zero, e.g. '25.6 kHz'")
-    return value
 
 
 def read_foreign(path: Path, options: SampleOptions) -> tuple[Recording | Surface, ...]:

@@ -26,6 +26,9 @@ IN_SI = {"si": True}
 """Context of a validation whose numbers are in SI units already: stored content."""
 
 
+_WAY_OUT = "mend it there, or give the TOML file in its place"
+
+
 class StrictTable(BaseModel):
     """A table of a TOML file: no other keys than its own, and nothing changes later."""
 
@@ -75,8 +78,11 @@ def read_toml(path: Path, model: type[_Model]) -> _Model:
         raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
     except ValidationError as error:
         raise BadData(f"{shown}: {first_problem(error, model)}") from error
+    except UnicodeDecodeError as error:
+        place = f"byte {error.start + 1} is no UTF-8 text"
+        raise BadData(f"{shown}: not a TOML file ({place}); {_WAY_OUT}") from error
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
-        raise BadData(f"{shown}: not a TOML file ({error})") from error
+        raise BadData(f"{shown}: not a TOML file ({error}); {_WAY_OUT}") from error
 
 
 def first_problem(error: ValidationError, model: type[BaseModel]) -> str:

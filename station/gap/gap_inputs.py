@@ -45,7 +45,7 @@ from jointbench.station.gap.session_hits import (
 )
 from jointbench.station.gap.structure_files import examine_structure, nominal_beside
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
-from jointbench.station.gap.surface_gap import examine_surface, surface_remarks
+from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.gap.surface_gap_section import surface_gap_sections
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
@@ -239,12 +239,12 @@ def _examine_surface(
             "surface it takes no model, preload or effects. Bring hits in with "
             "`jointbench import` first"
         )
-    done = examine_surface(paths, without=wanted.without, progress=progress)
+    done, remarks = examine_surface(paths, without=wanted.without, progress=progress)
     title = ", ".join(path.stem for path in paths)
     return Examined(
         title,
         done.found,
-        remarks=surface_remarks(done),
+        remarks=remarks,
         sections=surface_gap_sections(done),
     )
 

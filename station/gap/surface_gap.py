@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A measured surface as a source of `gap`: what self-affinity lacks to explain it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UnitError, UsageError
@@ -11,6 +11,7 @@ from jointbench.analysis.gap.surface_bench.surface_diagnosis import (
     SurfaceDiagnosis,
     diagnose_surface,
 )
+from jointbench.signal.surface.complete_lines import missing_words
 
 
 def examine_surface(
@@ -18,7 +19,7 @@ def examine_surface(
     *,
     without: frozenset[str],
     progress: Callable[[str], None],
-) -> SurfaceDiagnosis:
+) -> tuple[SurfaceDiagnosis, tuple[str, ...]]:
     """Read and diagnose a surface.
 
     Args:
@@ -26,13 +27,17 @@ def examine_surface(
         without: names of effects to leave out of the catalogue.
         progress: receives one line per step.
 
+    Returns:
+        The diagnosis, and what sums it up, a line each.
+
     Raises:
         BadData: a file cannot be read, or its heights do not suffice.
         UsageError: several maps, or `without` holds an unknown name.
     """
     progress("reading the heights")
     surfaces = [_read(path) for path in paths]
-    return diagnose_surface(surfaces, without=without, progress=progress)
+    done = diagnose_surface(surfaces, without=without, progress=progress)
+    return done, (*_summary(done), *_missing(surfaces))
 
 
 def _read(path: Path) -> Surface:
@@ -47,12 +52,14 @@ def _read(path: Path) -> Surface:
         ) from error
 
 
-def surface_remarks(done: SurfaceDiagnosis) -> tuple[str, ...]:
-    """Return what sums up a diagnosis, a line each.
+def _missing(surfaces: Sequence[Surface]) -> Iterator[str]:
+    for surface in surfaces:
+        words = missing_words(surface)
+        if words:
+            yield f"{surface.name}: {words}"
 
-    Args:
-        done: the diagnosis.
-    """
+
+def _summary(done: SurfaceDiagnosis) -> tuple[str, ...]:
     hurst = done.found.base[0]
     law = f"H = {hurst.value:.3f} ± {hurst.sd:.3f} of the self-affine base"
     return (f"summary: {done.summary.value}; {law}",)

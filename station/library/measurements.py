@@ -18,11 +18,11 @@ from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.station.files.input_files import (
     is_session_name,
-    parse_rate,
     read_foreign,
     refuse_twice,
 )
 from jointbench.station.files.session_place import check_session_name
+from jointbench.station.files.typed_values import parse_point, parse_rate
 from jointbench.station.library.argument_checks import one_path, require_texts
 from jointbench.station.library.labelled_arrays import dataset
 from jointbench.station.library.line_plot import AxisView, Curve, line_plot
@@ -165,12 +165,12 @@ def open_measurement(
 
     Raises:
         BadData: a file cannot be read, or its units are missing.
-        UsageError: the same data twice.
+        UsageError: the same data twice, or an empty point.
     """
     paths = paths_of(files)
     require_texts(f"{HITS_EXAMPLE!r}", columns=columns, point=point)
     refuse_twice(paths)
-    options = SampleOptions(columns, point, rate=parse_rate(rate))
+    options = SampleOptions(columns, parse_point(point), rate=parse_rate(rate))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
     sessions: list[Session] = []

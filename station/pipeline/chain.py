@@ -14,7 +14,7 @@ Every command and every recipe runs these stages, each through a store
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.acquisition.basics.errors import NoHitFound, NoModeFound
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.provenance import Provenance, Step
 from jointbench.acquisition.records.recordings import Recording
@@ -29,7 +29,7 @@ from jointbench.signal.frf.measured_frf import (
     measure_frf,
 )
 from jointbench.signal.hits.find_hits import HitCriteria
-from jointbench.signal.hits.pulse_duration import time_scale_words
+from jointbench.signal.hits.plausibility import plausibility_words
 from jointbench.signal.hits.windows import WindowRequest, requested_window
 from jointbench.signal.kalman.oscillator_bank import repair_dropouts
 from jointbench.signal.kalman.smoothing import (
@@ -156,13 +156,17 @@ def judged_modes(
     """Take recordings with judged hits to modes, see `modal_chain`.
 
     Raises:
+        NoHitFound: none was accepted; likewise.
         NoModeFound: there is none; the message gives possible causes.
     """
     try:
         with one_thread():
             return modal_chain(judged, settings, run or StageRun(), preload)
+    except NoHitFound as error:
+        why = plausibility_words(judged)
+        raise NoHitFound("; ".join((str(error), *why))) from error
     except NoModeFound as error:
-        why = (*time_scale_words(judged), *block_words(judged))
+        why = (*plausibility_words(judged), *block_words(judged))
         raise NoModeFound("; ".join((str(error), *why))) from error
 
 

@@ -42,13 +42,15 @@ from jointbench.station.files.session_facts import session_facts
 from jointbench.station.pipeline.judge_again import NOT_THERE, VerdictChange
 from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
 from jointbench.station.pipeline.surface_stages import SurfaceChain
-from jointbench.station.results.quantities import ResultQuantity, quantities_of
+from jointbench.station.results.quantities import quantities_of
+from jointbench.station.results.result_rows import (
+    OF_EACH_ROW,
+    PROCESSED_SCHEMA,
+    ResultQuantity,
+)
 from jointbench.station.results.results_file import write_environment, write_modal
 from jointbench.station.schemas.recipe import Recipe, recipe_content
 
-PROCESSED_SCHEMA = "jointbench-results/2"
-OF_EACH_ROW = "see the variable unit"
-"""In place of the unit of a column whose rows have their own."""
 SENSOR_FACTS = ("name", "quantity", "serial", "certificate", "calibrated", "due")
 LINE = 4096
 """Characters of a line of JSON: a table of texts is as wide as its longest."""

@@ -6,7 +6,6 @@ standard deviation, or a word in place of a number.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,36 +15,11 @@ from jointbench.acquisition.records.recordings import Verdict
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
 from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
 from jointbench.station.pipeline.surface_stages import SurfaceChain
+from jointbench.station.results.result_rows import NAN, ResultQuantity
 from jointbench.station.roughness.texture_words import parameter_names
 
-NAN = float("nan")
 # A 95 % interval of a normal quantity is this many standard deviations wide.
 _WIDTH_95 = 3.919927969080108
-
-
-@dataclass(frozen=True, slots=True)
-class ResultQuantity:
-    """One number of a result.
-
-    Attributes:
-        part: ``hits``, ``modes``, ``surface``, ``contact``, ``joint`` or ``gap``.
-        item: which mode, surface, link; empty where there is but one.
-        name: of the quantity, for example ``natural_frequency``.
-        unit: SI; ``1`` for a plain number.
-        value: [unit]; NaN where there is a word in its place.
-        sd: its standard deviation [unit]; NaN where none is known.
-        word: a verdict, where the quantity is one.
-        preload: at which it was found [N]; NaN where not given.
-    """
-
-    part: str
-    item: str
-    name: str
-    unit: str
-    value: float = NAN
-    sd: float = NAN
-    word: str = ""
-    preload: float = NAN
 
 
 def quantities_of(result: ProcessedSession) -> tuple[ResultQuantity, ...]:

@@ -31,8 +31,8 @@ from jointbench.station.files.computing_environment import computing_environment
 from jointbench.station.files.input_files import is_session_name
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.results.amplitude_results import write_amplitude
+from jointbench.station.results.result_rows import MODAL_SCHEMA
 
-SCHEMA = "jointbench-results/1"
 FRF_UNITS = {
     FrfKind.RECEPTANCE: "m N-1",
     FrfKind.MOBILITY: "m s-1 N-1",
@@ -61,7 +61,9 @@ def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None
         chain: what was found.
         inputs: files it was found in, named in the results by their SHA-256.
     """
-    with new_signed_file(path, schema=SCHEMA, title="Results of jointbench") as file:
+    with new_signed_file(
+        path, schema=MODAL_SCHEMA, title="Results of jointbench"
+    ) as file:
         write_attributes(
             file,
             {

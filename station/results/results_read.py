@@ -28,9 +28,11 @@ from jointbench.acquisition.file_access.netcdf_read import (
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.session_file.store import damage_named
 from jointbench.station.pipeline.judge_again import VerdictChange
-from jointbench.station.results.processed_file import PROCESSED_SCHEMA
-from jointbench.station.results.quantities import ResultQuantity
-from jointbench.station.results.results_file import SCHEMA as MODAL_SCHEMA
+from jointbench.station.results.result_rows import (
+    MODAL_SCHEMA,
+    PROCESSED_SCHEMA,
+    ResultQuantity,
+)
 
 _FAMILY = MODAL_SCHEMA.partition("/")[0] + "/"
 FACTS = (

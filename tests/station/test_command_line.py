@@ -102,6 +102,15 @@ def test_a_damaged_table_is_refused(
     assert not (tmp_path / "s.h5").exists(), name
 
 
+def test_swapped_columns_are_named_where_no_hit_is_accepted(
+    refused: Refused, tmp_path: Path
+) -> None:
+    """`modal` names the cause as `import` does, not only the double hit."""
+    path = hit_table(tmp_path / "hit.csv")
+    line = refused("modal", path, "--columns", "time:s,acceleration:m/s^2,force:N")
+    assert "are the columns swapped?" in line
+
+
 @pytest.fixture(scope="module")
 def whole_session(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """Import a hit once; return the bytes of its session file."""

@@ -223,3 +223,23 @@ def test_an_hdf5_file_is_called_by_its_name(tmp_path):
     path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500))
     with pytest.raises(FormatError, match=r"is an HDF5 file.*'jointbench modal'"):
         read_table(path)
+
+
+@pytest.mark.parametrize("kind", ["%.4f", "%.4e"])
+def test_a_number_cut_at_the_end_of_the_file_is_refused(tmp_path, kind):
+    """A cut number is a number; a last row without a line end may be whole."""
+    path = tmp_path / "table.csv"
+    np.savetxt(path, np.arange(60.0).reshape(20, 3) / 7, fmt=kind, delimiter=";")
+    whole = path.read_text()
+    path.write_text(whole.rstrip("\n"))
+    assert read_table(path).shape == (3, 20)
+    path.write_text(whole[:-2])
+    with pytest.raises(FormatError, match="the file is cut short"):
+        read_table(path)
+
+
+def test_a_short_last_number_of_a_column_without_fixed_digits_is_read(tmp_path):
+    """Programs that leave zeros out print 2 beside 1.25."""
+    path = tmp_path / "table.csv"
+    path.write_text("0,1.25\n1,1.5\n2,1.125\n3,2")
+    assert_array_equal(read_table(path)[1], [1.25, 1.5, 1.125, 2.0])

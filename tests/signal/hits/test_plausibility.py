@@ -38,6 +38,16 @@ def recording(force: FloatArray, motion: FloatArray, unit: str = "m/s^2") -> Rec
     return Recording("r", np.array([force, motion]), RATE, channels)
 
 
+def test_swapped_columns_are_found_in_a_record_that_is_mostly_quiet() -> None:
+    """The decay takes a small share of it, and swings where a hammer only pushes."""
+    quiet = np.zeros(9 * COUNT)
+    rings = answer() - pulse() / MASS
+    pushed, rang = (np.concatenate([one, quiet]) for one in (pulse(), rings))
+    assert plausibility_words([recording(pushed, rang)]) == ()
+    (line,) = plausibility_words([recording(rang, pushed)])
+    assert "columns swapped" in line
+
+
 def test_a_plausible_hit_brings_no_line() -> None:
     """The mass is that of the struck body."""
     good = recording(pulse(), answer())

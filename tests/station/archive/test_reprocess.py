@@ -245,7 +245,7 @@ def test_results_are_no_sessions(make_session, tmp_path: Path) -> None:
     (tmp_path / "in" / "a.plain.results.h5").write_bytes(b"")
     assert [p.name for p in session_files([str(tmp_path / "in" / "*.h5")])] == ["a.h5"]
     with pytest.raises(UsageError, match="quote the pattern"):
-        session_files([str(tmp_path / "none" / "*.h5")])
+        session_files([str(tmp_path / "in" / "*.hdf5")])
 
 
 def test_a_folder_met_by_several_links_is_walked_once(

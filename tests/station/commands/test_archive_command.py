@@ -24,7 +24,7 @@ from jointbench.station.archive.trends import (
 )
 from jointbench.station.commands.archive_command import ways_of
 from jointbench.station.files.archive_patterns import result_files
-from jointbench.station.results.quantities import ResultQuantity
+from jointbench.station.results.result_rows import ResultQuantity
 from jointbench.station.results.results_read import is_results, without_copies
 from jointbench.station.schemas.recipe import Recipe
 from jointbench.station.schemas.recipe_modal_parts import WindowsPart

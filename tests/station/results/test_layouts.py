@@ -12,8 +12,7 @@ from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
 from jointbench.station.archive.archive_table import TABLE_SCHEMA
 from jointbench.station.archive.ledger import LEDGER_SCHEMA, open_ledger, read_ledger
-from jointbench.station.results.processed_file import PROCESSED_SCHEMA
-from jointbench.station.results.results_file import SCHEMA as MODAL_SCHEMA
+from jointbench.station.results.result_rows import MODAL_SCHEMA, PROCESSED_SCHEMA
 from jointbench.station.results.results_read import read_result
 
 KEPT = Path(__file__).parents[2] / "fixtures"
