@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap, View
+from jointbench.station.drawing.palette import MODEL, REFUSED
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import Trace
 
-MEASURED, BEFORE, AFTER = "#1c2733", "#d1495b", "#0b5cab"
+BEFORE, AFTER = REFUSED, MODEL
 LEGEND = {"orientation": "h", "x": 0, "yanchor": "bottom", "traceorder": "normal"}
 LOWEST_BAR = 0.5
 """Where the bars of chi2/dof start: below 1, so that noise is seen as a short bar."""
