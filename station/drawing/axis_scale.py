@@ -66,6 +66,12 @@ def numbers_of(values: object) -> FloatArray:
 _NONE = np.zeros(0)
 
 
+def plain_number(value: object, otherwise: float) -> float:
+    """Return a setting of a figure that must be a finite number, else `otherwise`."""
+    found = _number(value)
+    return found if isfinite(found) else otherwise
+
+
 def _number(value: object) -> float:
     try:
         return float(value)  # type: ignore[arg-type]

@@ -10,10 +10,11 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.drawing.axis_scale import AxisScale, numbers_of
+from jointbench.station.drawing.css_colours import colour_attributes
 from jointbench.station.drawing.drawn_intervals import interval_ends
 from jointbench.station.drawing.figure_parts import part
 from jointbench.station.drawing.heat_picture import heat_address, legible_on
-from jointbench.station.drawing.palette import MODEL, colour_attributes
+from jointbench.station.drawing.palette import MODEL
 from jointbench.station.drawing.svg_paths import (
     HEIGHT,
     WIDTH,

@@ -74,7 +74,8 @@ def figure_parts(figure: Part) -> FigureParts:
     """
     layout = part(figure, "layout")
     data = figure.get("data")
-    traces = [t for t in data if isinstance(t, Mapping)] if _listed(data) else []
+    listed = data if isinstance(data, list | tuple) else []
+    traces = [t for t in listed if isinstance(t, Mapping)]
     groups: dict[tuple[str, str], list[Part]] = {}
     for trace in traces:
         x, y = _name(trace, "xaxis", "x"), _name(trace, "yaxis", "y")
@@ -83,10 +84,6 @@ def figure_parts(figure: Part) -> FigureParts:
         groups.setdefault(key, []).append(trace)
     panels = [_panel(layout, key, tuple(own)) for key, own in groups.items()]
     return FigureParts(layout, _columns(panels), _scales(layout, traces))
-
-
-def _listed(value: object) -> bool:
-    return isinstance(value, list | tuple)
 
 
 def _name(trace: Part, key: str, otherwise: str) -> str:

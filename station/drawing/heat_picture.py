@@ -15,8 +15,8 @@ VIRIDIS = (
 )
 """Colours from the smallest to the largest value; even steps for every eye."""
 _LEVELS = 96
-_DARK_BELOW = 0.6
-"""Share of the range below which a number on a map is written in white."""
+_BLACK_FROM = 0.1791
+"""Luminance at which black and white are equally legible, 4.6:1."""
 
 
 def heat_address(values: FloatArray, low: float, high: float) -> str:
@@ -49,7 +49,16 @@ def heat_colour(share: float) -> tuple[int, int, int]:
 
 def legible_on(share: float) -> str:
     """Return the colour of a number that is written on a share of the range."""
-    return "#ffffff" if share < _DARK_BELOW else "#1c2733"
+    linear = [_linear(one / 255) for one in heat_colour(share)]
+    light = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    return "#ffffff" if light < _BLACK_FROM else "#000000"
+
+
+def _linear(value: float) -> float:
+    """Return the linear part of a colour in sRGB (IEC 61966-2-1)."""
+    return float(
+        value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+    )
 
 
 def _rgb(text: str) -> tuple[int, int, int]:

@@ -5,7 +5,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from jointbench.station.drawing.axis_scale import AxisScale, axis_marks, numbers_of
+from jointbench.station.drawing.axis_scale import (
+    AxisScale,
+    axis_marks,
+    numbers_of,
+    plain_number,
+)
 from jointbench.station.drawing.drawn_traces import attributes, drawn_traces, text_of
 from jointbench.station.drawing.figure_parts import (
     FigureParts,
@@ -79,7 +84,7 @@ def panel_markup(parts: FigureParts, panel: PanelParts, tall: int) -> str:
         else ""
     )
     return (
-        f'<div class="panel"{most} {_ends(x, y)}>'
+        f'<div class="panel"{most} {_ends(x, y)}{_reach(panel, x)}>'
         f'<p class="yts"><span class="yt">{text_of(axis_title(panel.y))}</span>'
         f"{over_title}</p>"
         f'<div class="rowed">{_y_marks(y_marks)}<div class="box" style="{size}">'
@@ -97,6 +102,18 @@ def _ends(x: AxisScale, y: AxisScale) -> str:
         f'data-{name}="{s.low:.9g} {s.high:.9g} {int(s.log)}"'
         for name, s in (("x", x), ("y", y))
     )
+
+
+def _reach(panel: PanelParts, x: AxisScale) -> str:
+    """Return how far the traces go beyond an axis whose range is set."""
+    if "range" not in panel.x or x.names or x.turned:
+        return ""
+    places = [x.places(trace.get("x")) for trace in panel.traces]
+    every = np.concatenate([p[np.isfinite(p)] for p in places] or [np.zeros(0)])
+    if not every.size or (every.min() >= 0.0 and every.max() <= 1.0):
+        return ""
+    low, high = min(float(every.min()), 0.0), max(float(every.max()), 1.0)
+    return f' data-reach="{max(low, -20.0):.4g} {min(high, 20.0):.4g}"'
 
 
 def _grid(
@@ -119,8 +136,9 @@ def _x_marks(marks: list[tuple[float, str]], scale: AxisScale) -> str:
     """Return the marks below a panel; names stand at a slant where they are long."""
     letters = sum(len(t) for _, t in marks)
     kind = "xm slant" if scale.names and letters > 40 else "xm"
+    many = len(marks) > _MOST_ON_PHONE
     written = "".join(
-        f'<span style="--x:{round(p * WIDTH)}"{" class=odd" * (k % 2 and len(marks) > _MOST_ON_PHONE)}>'
+        f'<span style="--x:{round(p * WIDTH)}"{" class=odd" * (many and k % 2)}>'
         f"{text_of(t)}</span>"
         for k, (p, t) in enumerate(marks)
     )
@@ -156,7 +174,7 @@ def _shapes(
         else:
             dash = {"dash": "6 4", "dot": "1.5 3.5"}.get(str(line.get("dash")), "")
             style = (
-                f"stroke-width:{line.get('width', 1):g}"
+                f"stroke-width:{plain_number(line.get('width'), 1.0):g}"
                 + f";stroke-dasharray:{dash}" * bool(dash)
             )
             kind = attributes(line.get("color"), "ln", otherwise=GUIDE, style=style)
@@ -168,8 +186,8 @@ def _shapes(
 def _span(shape: Part, side: str, scale: AxisScale | None) -> list[float]:
     ends = [shape.get(f"{side}0", 0), shape.get(f"{side}1", 1)]
     if scale is None:
-        return numbers_of(ends).tolist()
-    return scale.places(ends).tolist()
+        return [float(one) for one in numbers_of(ends)]
+    return [float(one) for one in scale.places(ends)]
 
 
 def _notes(parts: FigureParts, panel: PanelParts, x: AxisScale, y: AxisScale) -> str:

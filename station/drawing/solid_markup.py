@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.station.drawing.axis_scale import numbers_of
+from jointbench.acquisition.file_access.quoting import visible
+from jointbench.station.drawing.axis_scale import numbers_of, plain_number
 from jointbench.station.drawing.drawn_traces import attributes, text_of
 from jointbench.station.drawing.figure_parts import Part, part
 from jointbench.station.drawing.heat_picture import heat_colour
@@ -29,7 +30,7 @@ _TINTS = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class View:
+class SceneView:
     """How a scene is looked at: its middle, its scale, and the axes of the picture."""
 
     middle: FloatArray
@@ -97,7 +98,7 @@ def _known(points: FloatArray) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]
     return np.asarray(np.isfinite(points).all(axis=1))
 
 
-def _view(scene: Part, points: Sequence[FloatArray]) -> View:
+def _view(scene: Part, points: Sequence[FloatArray]) -> SceneView:
     eye = part(part(scene, "camera"), "eye")
     given = [eye.get(k, e) for k, e in zip("xyz", _EYE, strict=True)]
     towards = numbers_of(given)
@@ -109,10 +110,10 @@ def _view(scene: Part, points: Sequence[FloatArray]) -> View:
     every = every[_known(every)]
     low, high = every.min(axis=0), every.max(axis=0)
     half = 0.5 * float(np.linalg.norm(high - low)) or 1.0
-    return View(0.5 * (low + high), _HALF / half, axes)
+    return SceneView(0.5 * (low + high), _HALF / half, axes)
 
 
-def _drawn(trace: Part, points: FloatArray, view: View) -> str:
+def _drawn(trace: Part, points: FloatArray, view: SceneView) -> str:
     if trace.get("type") == "mesh3d":
         return _mesh(trace, points, view)
     mode = str(trace.get("mode", "lines"))
@@ -120,19 +121,16 @@ def _drawn(trace: Part, points: FloatArray, view: View) -> str:
     color = part(trace, "line").get("color", part(trace, "marker").get("color"))
     found = ""
     if "lines" in mode:
-        width = part(trace, "line").get("width", 2)
-        style = f"stroke-width:{0.6 * float(str(width)):g}"
+        style = f"stroke-width:{0.6 * _width(trace):g}"
         said = attributes(color, "ln", style=style)
         found += f'<path {said} d="{_wire(flat)}"/>'
     if "markers" in mode:
-        size = float(str(part(trace, "marker").get("size", 4)))
+        size = plain_number(part(trace, "marker").get("size"), 4.0)
         kept = flat[_known(points)]
         said = attributes(color, "dots", style=f"stroke-width:{size + 1:g}")
         found += f'<path {said} d="{_dots(kept)}"/>'
     if "text" in mode:
-        texts = trace.get("text")
-        listed = list(texts) if isinstance(texts, list | tuple) else []
-        for place, word in zip(flat, listed, strict=False):
+        for place, word in zip(flat, _listed(trace.get("text")), strict=False):
             said = attributes(color, "st")
             at = f'x="{place[0]:.0f}" y="{-place[1] - 60:.0f}"'
             found += f"<text {said} {at}>{text_of(word)}</text>"
@@ -163,7 +161,7 @@ def _swung(swing: Part, points: Sequence[FloatArray]) -> list[FloatArray]:
 
 
 def _opposite(
-    swing: Part, traces: Sequence[Part], points: Sequence[FloatArray], view: View
+    swing: Part, traces: Sequence[Part], points: Sequence[FloatArray], view: SceneView
 ) -> str:
     """Return the moving wire half a cycle later, thin."""
     at = int(str(swing.get("trace", 0)))
@@ -173,7 +171,7 @@ def _opposite(
     return f'<path {said} d="{_wire(flat)}"/>'
 
 
-def _mesh(trace: Part, points: FloatArray, view: View) -> str:
+def _mesh(trace: Part, points: FloatArray, view: SceneView) -> str:
     """Return triangles from the far to the near, as few paths as colours allow."""
     corners = _corners(trace)
     flat = view.of(points)
@@ -181,7 +179,7 @@ def _mesh(trace: Part, points: FloatArray, view: View) -> str:
     shade = _shade(points, corners)
     tint = _tint(trace, corners)
     whole = np.rint(flat).astype(int)
-    style = f"opacity:{trace['opacity']}" if "opacity" in trace else ""
+    style = f"opacity:{_opacity(trace):g}" if "opacity" in trace else ""
     color = trace.get("color")
     found: list[str] = []
     last, path = None, ""
@@ -221,7 +219,7 @@ def _shade(
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1)
     light = np.abs(normal @ _LIGHT) / np.maximum(length, 1e-300)
-    return np.rint(light * (_SHADES - 1)).astype(np.int64)
+    return np.asarray(np.rint(light * (_SHADES - 1)), np.int64)
 
 
 def _tint(
@@ -229,14 +227,14 @@ def _tint(
 ) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]] | None:
     if "intensity" not in trace:
         return None
-    low, high = float(str(trace.get("cmin", 0))), float(str(trace.get("cmax", 1)))
+    low, high = plain_number(trace.get("cmin"), 0), plain_number(trace.get("cmax"), 1)
     share = (numbers_of(trace["intensity"]) - low) / max(high - low, 1e-300)
     mean = np.clip(share[corners].mean(axis=1), 0, 1)
-    return np.rint(mean * (_TINTS - 1)).astype(np.int64)
+    return np.asarray(np.rint(mean * (_TINTS - 1)), np.int64)
 
 
 def _data(
-    traces: Sequence[Part], points: Sequence[FloatArray], view: View, swing: Part
+    traces: Sequence[Part], points: Sequence[FloatArray], view: SceneView, swing: Part
 ) -> dict[str, object]:
     """Return a scene for the script: whole numbers about the middle."""
     found: list[dict[str, object]] = []
@@ -248,16 +246,12 @@ def _data(
             one |= {"t": corners.ravel().tolist(), "s": _shade(place, corners).tolist()}
             tint = _tint(trace, corners)
             one |= {"c": tint.tolist()} if tint is not None else {}
-            one |= {"o": trace["opacity"]} if "opacity" in trace else {}
+            one |= {"o": _opacity(trace)} if "opacity" in trace else {}
             color = trace.get("color")
         else:
             one |= {"m": str(trace.get("mode", "lines"))}
-            one |= {"w": part(trace, "line").get("width", 2)}
-            one |= (
-                {"l": list(trace["text"])}
-                if isinstance(trace.get("text"), list | tuple)
-                else {}
-            )  # type: ignore[call-overload]
+            one |= {"w": _width(trace)}
+            one |= {"l": _listed(trace.get("text"))}
         one["k"] = attributes(color, "k", otherwise=MODEL if "t" not in one else GUIDE)
         if swing and at == int(str(swing.get("trace", 0))):
             one["re"] = _whole(_points(part(swing, "real")), view.scale)
@@ -270,6 +264,19 @@ def _whole(points: FloatArray, scale: float) -> list[int | None]:
     return [
         round(v) if np.isfinite(v) else None for v in (points * scale).ravel().tolist()
     ]
+
+
+def _listed(texts: object) -> list[str]:
+    found = texts if isinstance(texts, list | tuple) else []
+    return [visible(str(one)) for one in found]
+
+
+def _width(trace: Part) -> float:
+    return plain_number(part(trace, "line").get("width"), 2.0)
+
+
+def _opacity(trace: Part) -> float:
+    return min(max(plain_number(trace.get("opacity"), 1.0), 0.0), 1.0)
 
 
 def _legend(traces: Sequence[Part]) -> str:

@@ -7,9 +7,10 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 
 WIDTH, HEIGHT = 8000, 4000
 """Units of a panel along x and along y; 1 of 8000 stays sharp when zoomed."""
-MOST_COLUMNS = 700
+_MOST_COLUMNS = 700
 """Stretches of a line of which the smallest and the largest value are drawn."""
-_BEYOND = 3.0
+_BEYOND = 20.0
+"""How far beyond a panel a line is drawn [panels]: seen when zoomed out."""
 
 
 def on_grid(x: FloatArray, y: FloatArray) -> tuple[IntArray, IntArray, BoolArray]:
@@ -50,9 +51,9 @@ def _joined(steps: list[int]) -> str:
 
 def _envelope(x: IntArray, y: IntArray) -> tuple[IntArray, IntArray]:
     """Return a long line with its smallest and largest value of each stretch."""
-    if x.size <= 2 * MOST_COLUMNS or np.any(np.diff(x) < 0):
+    if x.size <= 2 * _MOST_COLUMNS or np.any(np.diff(x) < 0):
         return x, y
-    group = -(-x.size // MOST_COLUMNS)
+    group = -(-x.size // _MOST_COLUMNS)
     whole = x.size - x.size % group
     rows = y[:whole].reshape(-1, group)
     start = np.arange(rows.shape[0]) * group
@@ -78,7 +79,7 @@ def area_path(x: FloatArray, low: FloatArray, high: FloatArray) -> str:
     if known.sum() < 2:
         return ""
     x, low, high = x[known], low[known], high[known]
-    every = max(1, x.size // MOST_COLUMNS)
+    every = max(1, x.size // _MOST_COLUMNS)
     kept = np.unique(np.append(np.arange(0, x.size, every), x.size - 1))
     around = np.concatenate([x[kept], x[kept][::-1]])
     edge = np.concatenate([low[kept], high[kept][::-1]])

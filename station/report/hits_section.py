@@ -9,7 +9,13 @@ from jointbench.station.report.figures.hit_figures import (
     response_figures,
 )
 from jointbench.station.report.figures.small_multiples import small_multiples
-from jointbench.station.screen.page_parts import DataTable, Group, Item, Section, Text
+from jointbench.station.screen.page_parts import (
+    DataTable,
+    Item,
+    ItemGroup,
+    Section,
+    Text,
+)
 
 REJECTED = frozenset(v.value for v in Verdict if v is not Verdict.OK)
 _COLUMNS = ("hit", "time [s]", "point", "peak [N]", "verdict", "reason")
@@ -38,7 +44,7 @@ def hits_section(recordings: Sequence[Recording]) -> Section:
         items += small_multiples(said, plots, "channels")
     if good:
         table = DataTable("Accepted hits.", _COLUMNS[:-1], _rows(recordings, True))
-        items.append(Group(f"{good} accepted hits", (table,)))
+        items.append(ItemGroup(f"{good} accepted hits", (table,)))
     return Section("hits", "Hits", tuple(items))
 
 

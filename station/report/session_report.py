@@ -40,7 +40,13 @@ from jointbench.station.schemas.geometry_file import (
     read_geometry,
 )
 from jointbench.station.screen.page import placed_sections, write_report
-from jointbench.station.screen.page_parts import DataTable, Group, Report, Section, Text
+from jointbench.station.screen.page_parts import (
+    DataTable,
+    ItemGroup,
+    Report,
+    Section,
+    Text,
+)
 from jointbench.station.screen.terminal import console, write_json
 
 LONGEST_DETAIL = 300
@@ -256,7 +262,7 @@ def _provenance(
         ("of", "step", "detail"),
         steps,
     )
-    fold = Group(f"{len(steps)} steps from the instrument to the numbers", (table,))
+    fold = ItemGroup(f"{len(steps)} steps from the instrument to the numbers", (table,))
     return Section("provenance", "Provenance", (fold,))
 
 

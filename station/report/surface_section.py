@@ -17,8 +17,8 @@ from jointbench.station.screen.band_limited_words import COLUMNS as BAND_COLUMNS
 from jointbench.station.screen.band_limited_words import band_lines, band_rows
 from jointbench.station.screen.page_parts import (
     DataTable,
-    Group,
     Item,
+    ItemGroup,
     Report,
     Section,
     Text,
@@ -65,7 +65,7 @@ def surface_section(chains: Sequence[SurfaceChain]) -> Section:
             *kind_lines(c.kinds),
         )
     ]
-    items.append(Group("Reasons and remarks on each surface", tuple(said)))
+    items.append(ItemGroup("Reasons and remarks on each surface", tuple(said)))
     return Section("surfaces", "Surfaces", tuple(items))
 
 

@@ -15,7 +15,7 @@ from jointbench.station.roughness.texture_words import (
     title_words,
 )
 from jointbench.station.screen.figures import axis, figure
-from jointbench.station.screen.page_parts import DataTable, Group, Item, Plot, Text
+from jointbench.station.screen.page_parts import DataTable, Item, ItemGroup, Plot, Text
 from jointbench.station.screen.plot_numbers import thin
 from jointbench.station.screen.traces import line
 
@@ -40,14 +40,15 @@ def texture_items(answers: Sequence[tuple[str, TextureAnswer | None]]) -> list[I
             items.append(_traces(one, number))
     if measured:
         curves = tuple(_abbott(one, number) for number, one in enumerate(measured))
-        items.append(Group(_ABBOTT, curves, "grid"))
+        items.append(ItemGroup(_ABBOTT, curves, "grid"))
     for name, answer in answers:
         if answer is None:
             continue
         if answer.measured is not None:
             rows = tuple(parameter_rows(answer.measured))
             table = DataTable(title_words(answer.measured), COLUMNS, rows)
-            items.append(Group(f"{name}: {len(rows)} standard parameters", (table,)))
+            title = f"{name}: {len(rows)} standard parameters"
+            items.append(ItemGroup(title, (table,)))
         items.append(Text(f"{name}: {'; '.join(answer_lines(answer))}."))
     return items
 

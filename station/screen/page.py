@@ -9,15 +9,16 @@ from importlib.resources import files
 from pathlib import Path
 
 from jointbench.acquisition.file_access.quoting import visible
+from jointbench.station.drawing.css_colours import colour_attributes
 from jointbench.station.drawing.figure_markup import figure_markup
 from jointbench.station.drawing.figure_parts import axis_title
 from jointbench.station.drawing.legend_markup import legend_entries, legend_markup
-from jointbench.station.drawing.palette import MEANINGS, colour_attributes
+from jointbench.station.drawing.palette import MEANINGS
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.page_parts import (
     DataTable,
-    Group,
     Item,
+    ItemGroup,
     Plot,
     Report,
     Section,
@@ -66,7 +67,7 @@ def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:
 def _placed(item: Item, mark: str) -> Item:
     if isinstance(item, Plot):
         return replace(item, identifier=f"{item.identifier}{mark}")
-    if isinstance(item, Group):
+    if isinstance(item, ItemGroup):
         return replace(item, items=tuple(_placed(one, mark) for one in item.items))
     return item
 
@@ -126,7 +127,7 @@ def figures_in(items: Sequence[Item]) -> list[Plot]:
     for item in items:
         if isinstance(item, Plot):
             found.append(item)
-        elif isinstance(item, Group):
+        elif isinstance(item, ItemGroup):
             found += figures_in(item.items)
     return found
 
@@ -141,7 +142,7 @@ def _drawn(plot: Plot) -> dict[str, object]:
     return {"markup": Markup(markup), "words": words, "title": title}
 
 
-def _shared_legend(group: Group) -> object:
+def _shared_legend(group: ItemGroup) -> object:
     """Return one legend for all figures of a grid."""
     from markupsafe import Markup
 

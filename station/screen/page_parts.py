@@ -47,7 +47,7 @@ class Plot:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class ItemGroup:
     """Items that belong together: folded under a title, or small figures in a grid."""
 
     title: str
@@ -55,7 +55,7 @@ class Group:
     kind: Literal["fold", "grid"] = "fold"
 
 
-Item = Text | DataTable | Plot | Group
+Item = Text | DataTable | Plot | ItemGroup
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,11 +44,12 @@ function zoomable(panel) {
   const read = document.createElement("span"); read.className = "read"; read.hidden = true;
   const frame = document.createElement("span"); frame.className = "drag"; frame.hidden = true;
   box.append(read, frame);
+  const [least, most] = (panel.dataset.reach || "0 1").split(" ").map(Number);
   let view = {x0: 0, x1: 1, y0: 0, y1: 1}, start = null;
   const marks = {x: panel.querySelector(".xm"), y: panel.querySelector(".ym:not(.over)"), over: panel.querySelector(".ym.over")};
   const first = {x: marks.x && marks.x.innerHTML, y: marks.y.innerHTML,
     gx: svg.querySelector(".gx").getAttribute("d"), gy: svg.querySelector(".gy").getAttribute("d")};
-  const whole = () => view.x0 <= 0 && view.x1 >= 1 && view.y0 <= 0 && view.y1 >= 1;
+  const whole = () => view.x0 === 0 && view.x1 === 1 && view.y0 === 0 && view.y1 === 1;
 
   function write(holder, values, share, side, full) {
     if (!holder) return;
@@ -61,8 +62,8 @@ function zoomable(panel) {
   }
   function show(next) {
     const wide = Math.max(next.x1 - next.x0, 1e-4), tall = Math.max(next.y1 - next.y0, 1e-4);
-    const x0 = Math.min(Math.max(next.x0, 0), Math.max(1 - wide, 0)), y0 = Math.min(Math.max(next.y0, 0), Math.max(1 - tall, 0));
-    view = {x0, x1: Math.min(x0 + wide, 1), y0, y1: Math.min(y0 + tall, 1)};
+    const x0 = Math.min(Math.max(next.x0, least), Math.max(most - wide, least)), y0 = Math.min(Math.max(next.y0, 0), Math.max(1 - tall, 0));
+    view = {x0, x1: Math.min(x0 + wide, most), y0, y1: Math.min(y0 + tall, 1)};
     const w = (view.x1 - view.x0) * WIDTH, h = (view.y1 - view.y0) * HEIGHT;
     svg.setAttribute("viewBox", [view.x0 * WIDTH, (1 - view.y1) * HEIGHT, w, h].join(" "));
     const set = (name, value) => panel.style.setProperty(name, String(value));
@@ -122,7 +123,7 @@ function zoomable(panel) {
     const wide = view.x1 - view.x0, middle = (view.x0 + view.x1) / 2;
     const about = (w) => show({...view, x0: middle - w / 2, x1: middle + w / 2});
     if (key === "+" || key === "=") about(wide / 2);
-    else if (key === "-") wide * 2 >= 1 ? show({...view, x0: 0, x1: 1}) : about(wide * 2);
+    else if (key === "-") wide < 1 && wide * 2 >= 1 ? show({...view, x0: 0, x1: 1}) : about(Math.min(wide * 2, most - least));
     else if (key === "ArrowLeft") show({...view, x0: view.x0 - wide / 4, x1: view.x1 - wide / 4});
     else if (key === "ArrowRight") show({...view, x0: view.x0 + wide / 4, x1: view.x1 + wide / 4});
     else if (key === "0") show({x0: 0, x1: 1, y0: 0, y1: 1});

@@ -11,19 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.station.drawing.palette import (
-    GOOD,
-    GUIDE,
-    LAW,
-    MEMBERS,
-    MODEL,
-    REFUSED,
-)
+from jointbench.station.drawing.palette import MODEL
 from jointbench.station.screen.plot_numbers import numbers
 
 Trace = Mapping[str, object]
-PALETTE = (MODEL, REFUSED, GOOD, LAW, *MEMBERS[:2])
-GREY = GUIDE
 
 
 def line(
@@ -31,7 +22,7 @@ def line(
     y: Any,
     name: str,
     *,
-    color: str = PALETTE[0],
+    color: str = MODEL,
     dash: str = "solid",
     width: float = 1.6,
     axes: tuple[str, str] = ("x", "y"),
@@ -56,7 +47,7 @@ def markers(
     y: Any,
     name: str,
     *,
-    color: str = PALETTE[0],
+    color: str = MODEL,
     symbol: str = "circle",
     size: float = 7,
     axes: tuple[str, str] = ("x", "y"),

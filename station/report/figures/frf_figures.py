@@ -2,6 +2,7 @@
 """One small figure for each FRF: magnitude, phase, coherence, and the synthesis."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.signal.frf.frf import Frf, FrfKind
@@ -88,7 +89,7 @@ def _one_frf(
     return Plot(f"frf-plot-{number}", caption, plot, _HEIGHT)
 
 
-def _below(x: FloatArray, y: FloatArray, place: str) -> Trace:
+def _below(x: ArrayLike, y: ArrayLike, place: str) -> Trace:
     """Return a thin measured line in the panel of phase or of coherence."""
     return line(x, y, "", color=MEASURED, width=1, axes=("x", place), legend=False)
 

@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 
-from jointbench.station.screen.page_parts import Group, Item, Plot
+from jointbench.station.screen.page_parts import Item, ItemGroup, Plot
 
 MOST_SHOWN = 6
 """Small figures that are shown; the others open on a click, and when printed."""
@@ -22,8 +22,8 @@ def small_multiples(
     """
     if not plots:
         return []
-    items: list[Item] = [Group(title, tuple(plots[:shown]), "grid")]
+    items: list[Item] = [ItemGroup(title, tuple(plots[:shown]), "grid")]
     if rest := tuple(plots[shown:]):
         more = f"{len(rest)} further {noun}"
-        items.append(Group(more, (Group("", rest, "grid"),)))
+        items.append(ItemGroup(more, (ItemGroup("", rest, "grid"),)))
     return items

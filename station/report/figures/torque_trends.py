@@ -182,7 +182,7 @@ def _mode_plot(
     states: TorqueStates, models: Sequence[ModalModel], track: IntArray, number: int
 ) -> Plot:
     seen = np.flatnonzero(track >= 0)
-    picked = [(models[s], int(track[s])) for s in seen]
+    picked = [(models[s], int(track[s])) for s in seen.tolist()]
     frequency = np.array([m.natural_frequency[k] for m, k in picked])
     damping = np.array([100 * m.damping_ratio[k] for m, k in picked])
     wide = NORMAL_95 * np.array([m.frequency_sd[k] for m, k in picked])
@@ -219,13 +219,13 @@ def _link(states: TorqueStates, name: str, number: int) -> Plot | None:
             found.append((at, value, low or value, high or value, known[0].unit))
     if not found:
         return None
-    x, y, low, high = (np.array([row[k] for row in found], float) for k in range(4))
+    x, y, lower, upper = (np.array([row[k] for row in found], float) for k in range(4))
     trace = {
-        **_points(x, y, high - y, "y"),
+        **_points(x, y, upper - y, "y"),
         "error_y": {
             "symmetric": False,
-            "array": (high - y).tolist(),
-            "arrayminus": (y - low).tolist(),
+            "array": (upper - y).tolist(),
+            "arrayminus": (y - lower).tolist(),
         },
     }
     unit = found[0][4]

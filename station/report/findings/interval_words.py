@@ -6,6 +6,7 @@ from math import floor, isfinite, log10
 NORMAL_95 = 1.959964
 """Half width of the 95 % interval of a normal distribution [sd]."""
 _MOST_DIGITS = 7
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k"}
 _PREFIXES |= {6: "M", 9: "G", 12: "T"}
 
@@ -25,7 +26,7 @@ def value_and_interval(
         Value, and interval; the interval is empty without a standard deviation.
 
     >>> value_and_interval(5.9984e7, 4.4e4, "N/m")
-    ('59.98 MN/m', '95 %: 59.90 to 60.07 MN/m')
+    ('59.984 MN/m', '95 %: 59.898 to 60.070 MN/m')
     >>> value_and_interval(197.969091, 3.3e-5, "Hz", prefix=False)
     ('197.9691 Hz', '95 %: 197.9690 to 197.9692 Hz')
     """
@@ -33,7 +34,7 @@ def value_and_interval(
         return "-", ""
     if sd is None or not isfinite(sd) or sd <= 0:
         scaled, name = _scaled(value, unit, prefix=prefix)
-        return f"{scaled:.4g} {name}".rstrip(), ""
+        return f"{scaled:.4g}{_gap(name)}", ""
     return between(value, value - NORMAL_95 * sd, value + NORMAL_95 * sd, unit, prefix)
 
 
@@ -55,12 +56,18 @@ def between(
     wide = max(abs(ends[1] - ends[0]), 1e-300)
     lead = floor(log10(max(abs(scaled), wide)))
     digits = min(max(1 - floor(log10(wide / 2)), 0), max(_MOST_DIGITS - 1 - lead, 0))
-    words = f"{ends[0]:.{digits}f} to {ends[1]:.{digits}f} {name}".rstrip()
-    return f"{scaled:.{digits}f} {name}".rstrip(), f"95 %: {words}"
+    words = f"{ends[0]:.{digits}f} to {ends[1]:.{digits}f}{_gap(name)}"
+    return f"{scaled:.{digits}f}{_gap(name)}", f"95 %: {words}"
+
+
+def _gap(name: str) -> str:
+    """Return a unit with the blank before it; a power of ten follows the number."""
+    return name if not name or name.startswith("·") else f" {name}"
 
 
 def _scaled(value: float, unit: str, *, prefix: bool) -> tuple[float, str]:
     """Return a value in a readable multiple of its unit, and that unit."""
+    unit = unit.replace("^2", "²").replace("^3", "³")
     if not value:
         return value, unit
     power = 3 * floor(log10(abs(value)) / 3)
@@ -69,4 +76,5 @@ def _scaled(value: float, unit: str, *, prefix: bool) -> tuple[float, str]:
     if -3 <= log10(abs(value)) < 6:
         return value, unit
     lead = floor(log10(abs(value)))
-    return value / 10.0**lead, f"· 10^{lead} {unit}".rstrip()
+    raised = str(lead).translate(_RAISED)
+    return value / 10.0**lead, f"·10{raised} {unit}".rstrip()
