@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Colours of traces as class and style of the page, and nothing else."""
+"""Colours of traces as class and style of the report, and nothing else."""
 
 import re
 

@@ -13,7 +13,7 @@ from jointbench.station.drawing.axis_scale import AxisScale, numbers_of
 from jointbench.station.drawing.css_colours import colour_attributes
 from jointbench.station.drawing.drawn_intervals import interval_ends
 from jointbench.station.drawing.figure_parts import part
-from jointbench.station.drawing.heat_picture import heat_address, legible_on
+from jointbench.station.drawing.map_picture import legible_on, map_address
 from jointbench.station.drawing.palette import MODEL
 from jointbench.station.drawing.svg_paths import (
     HEIGHT,
@@ -50,7 +50,7 @@ class Drawn:
 
 
 def text_of(value: object) -> str:
-    """Return a text of a figure for the page: escaped, every character shown."""
+    """Return a text of a figure for the report: escaped, every character shown."""
     return escape(visible(str(value)))
 
 
@@ -242,7 +242,7 @@ def _map(trace: Mapping[str, object], x: AxisScale, y: AxisScale) -> Drawn:
     bottom, top = _outer(down)
     (x0, x1), (y0, y1), _ = on_grid(np.array([left, right]), np.array([bottom, top]))
     picture = (
-        f'<image href="{heat_address(shown, low, high)}" x="{x0}" y="{y1}" '
+        f'<image href="{map_address(shown, low, high)}" x="{x0}" y="{y1}" '
         f'width="{x1 - x0}" height="{y0 - y1}" preserveAspectRatio="none"/>'
     )
     return Drawn(picture, _map_numbers(trace, values, (across, down), (low, high)))

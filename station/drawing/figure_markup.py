@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A figure as markup: SVG that stretches with the page, and text that does not."""
+"""A figure as markup: SVG that stretches with the window, and text that does not."""
 
 from collections.abc import Mapping
 

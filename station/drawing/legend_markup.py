@@ -19,7 +19,7 @@ from jointbench.station.drawing.figure_parts import (
     axis_title,
     part,
 )
-from jointbench.station.drawing.heat_picture import VIRIDIS
+from jointbench.station.drawing.map_picture import VIRIDIS
 from jointbench.station.drawing.palette import MODEL
 
 

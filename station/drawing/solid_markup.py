@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Bodies and wires in three dimensions: a still view, and data to turn and move them.
 
-The still view is SVG and is what prints. The script of the page draws the same data on
+The still view is SVG and is what prints. The script of the report draws the same data on
 a canvas as soon as somebody turns the view or lets a shape move.
 """
 
@@ -16,8 +16,8 @@ from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.drawing.axis_scale import numbers_of, plain_number
 from jointbench.station.drawing.drawn_traces import attributes, text_of
 from jointbench.station.drawing.figure_parts import Part, part
-from jointbench.station.drawing.heat_picture import heat_colour
 from jointbench.station.drawing.legend_markup import legend_entries, legend_markup
+from jointbench.station.drawing.map_picture import map_colour
 from jointbench.station.drawing.palette import GUIDE, MODEL
 
 _SOLID = ("mesh3d", "scatter3d")
@@ -186,25 +186,27 @@ def _mesh(trace: Part, points: FloatArray, view: SceneView) -> str:
     for at in np.argsort(depth).tolist():
         look = (int(shade[at]), -1 if tint is None else int(tint[at]))
         if look != last and path:
-            found.append(_face(last, path, color, style))
+            found.append(_triangles_path(last, path, color, style))
             path = ""
         a, b, c = whole[corners[at], :2].tolist()
         path += f"M{a[0]} {-a[1]}L{b[0]} {-b[1]} {c[0]} {-c[1]}z"
         last = look
     if path:
-        found.append(_face(last, path, color, style))
+        found.append(_triangles_path(last, path, color, style))
     return "".join(found)
 
 
-def _face(look: tuple[int, int] | None, path: str, color: object, style: str) -> str:
+def _triangles_path(
+    look: tuple[int, int] | None, path: str, color: object, style: str
+) -> str:
     assert look is not None
     light = 0.62 + 0.38 * look[0] / (_SHADES - 1)
     if look[1] < 0:
         said = attributes(color, "body", otherwise=GUIDE, style=style)
         return f'<path {said} d="{path}"/>'
-    red, green, blue = (round(light * v) for v in heat_colour(look[1] / (_TINTS - 1)))
+    red, green, blue = (round(light * v) for v in map_colour(look[1] / (_TINTS - 1)))
     return (
-        f'<path class="face" style="--c:#{red:02x}{green:02x}{blue:02x}" d="{path}"/>'
+        f'<path class="facet" style="--c:#{red:02x}{green:02x}{blue:02x}" d="{path}"/>'
     )
 
 

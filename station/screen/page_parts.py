@@ -76,7 +76,7 @@ class Report:
         lead: what it is about and where it comes from.
         software: that made it.
         simulated: whether instruments were simulated.
-        tiles: numbers with their intervals, the most important first; the page shows
+        tiles: numbers with their intervals, the most important first; the report shows
             six and folds the rest.
         sections: evidence, in order.
         findings: what was found, in sentences; they stand before everything else.

@@ -16,7 +16,7 @@ def small_multiples(
 
     Args:
         title: what all of them show.
-        plots: the figures, the most telling first; their captions are short.
+        plots: the figures, the most informative first; their captions are short.
         noun: of what there are more, in the plural, for example "FRFs".
         shown: how many are not folded.
     """

@@ -5,7 +5,7 @@ from importlib.resources import files
 
 import pytest
 
-from jointbench.station.drawing.heat_picture import heat_colour, legible_on
+from jointbench.station.drawing.map_picture import legible_on, map_colour
 from jointbench.station.drawing.palette import MEANINGS
 
 CSS = files("jointbench.station.drawing").joinpath("palette.css").read_text("utf-8")
@@ -64,5 +64,5 @@ def test_no_two_roles_have_one_colour():
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.59, 0.61, 0.8, 1.0])
 def test_a_number_on_a_map_is_legible(share):
     """White on the dark half of the scale, ink on the bright half."""
-    ground = "#" + "".join(f"{v:02x}" for v in heat_colour(share))
+    ground = "#" + "".join(f"{v:02x}" for v in map_colour(share))
     assert contrast(legible_on(share), ground) >= LEAST_CONTRAST

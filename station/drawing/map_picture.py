@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Maps of values as small pictures inside the page."""
+"""Maps of values as small pictures inside the report."""
 
 import base64
 import struct
@@ -19,11 +19,11 @@ _BLACK_FROM = 0.1791
 """Luminance at which black and white are equally legible, 4.6:1."""
 
 
-def heat_address(values: FloatArray, low: float, high: float) -> str:
-    """Return a map as the address of a picture that is part of the page.
+def map_address(values: FloatArray, low: float, high: float) -> str:
+    """Return a map as the address of a picture that is part of the report.
 
     Args:
-        values: row by row from the top, shape (n_rows, n_columns); NaN shows the page.
+        values: row by row from the top, shape (n_rows, n_columns); NaN shows the ground.
         low: value of the first colour.
         high: value of the last colour.
     """
@@ -35,7 +35,7 @@ def heat_address(values: FloatArray, low: float, high: float) -> str:
     return f"data:image/png;base64,{encoded}"
 
 
-def heat_colour(share: float) -> tuple[int, int, int]:
+def map_colour(share: float) -> tuple[int, int, int]:
     """Return the colour of a share of the range, 0 to 1."""
     place = min(max(share, 0.0), 1.0) * (len(VIRIDIS) - 1)
     at = min(int(place), len(VIRIDIS) - 2)
@@ -49,7 +49,7 @@ def heat_colour(share: float) -> tuple[int, int, int]:
 
 def legible_on(share: float) -> str:
     """Return the colour of a number that is written on a share of the range."""
-    linear = [_linear(one / 255) for one in heat_colour(share)]
+    linear = [_linear(one / 255) for one in map_colour(share)]
     light = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
     return "#ffffff" if light < _BLACK_FROM else "#000000"
 
@@ -71,7 +71,7 @@ def _png(index: np.ndarray[tuple[int, ...], np.dtype[np.uint8]]) -> bytes:
     rows, columns = index.shape
     head = struct.pack(">IIBBBBB", columns, rows, 8, 3, 0, 0, 0)
     colours = b"\x00\x00\x00" + b"".join(
-        bytes(heat_colour(k / (_LEVELS - 1))) for k in range(_LEVELS)
+        bytes(map_colour(k / (_LEVELS - 1))) for k in range(_LEVELS)
     )
     lines = np.concatenate([np.zeros((rows, 1), np.uint8), index], axis=1)
     packed = zlib.compress(lines.tobytes(), 9)
