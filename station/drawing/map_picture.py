@@ -23,7 +23,7 @@ def map_address(values: FloatArray, low: float, high: float) -> str:
     """Return a map as the address of a picture that is part of the report.
 
     Args:
-        values: row by row from the top, shape (n_rows, n_columns); NaN shows the ground.
+        values: row by row from the top, shape (n_rows, n_columns); NaN is clear.
         low: value of the first colour.
         high: value of the last colour.
     """

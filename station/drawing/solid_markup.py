@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Bodies and wires in three dimensions: a still view, and data to turn and move them.
 
-The still view is SVG and is what prints. The script of the report draws the same data on
-a canvas as soon as somebody turns the view or lets a shape move.
+The still view is SVG and is what prints. The script of the report draws the same data
+on a canvas as soon as somebody turns the view or lets a shape move.
 """
 
 import json
@@ -186,19 +186,17 @@ def _mesh(trace: Part, points: FloatArray, view: SceneView) -> str:
     for at in np.argsort(depth).tolist():
         look = (int(shade[at]), -1 if tint is None else int(tint[at]))
         if look != last and path:
-            found.append(_triangles_path(last, path, color, style))
+            found.append(_facets(last, path, color, style))
             path = ""
         a, b, c = whole[corners[at], :2].tolist()
         path += f"M{a[0]} {-a[1]}L{b[0]} {-b[1]} {c[0]} {-c[1]}z"
         last = look
     if path:
-        found.append(_triangles_path(last, path, color, style))
+        found.append(_facets(last, path, color, style))
     return "".join(found)
 
 
-def _triangles_path(
-    look: tuple[int, int] | None, path: str, color: object, style: str
-) -> str:
+def _facets(look: tuple[int, int] | None, path: str, color: object, style: str) -> str:
     assert look is not None
     light = 0.62 + 0.38 * look[0] / (_SHADES - 1)
     if look[1] < 0:
