@@ -11,10 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.station.drawing.palette import MODEL
+from jointbench.station.drawing.palette import (
+    GOOD,
+    GUIDE,
+    LAW,
+    MEMBERS,
+    MODEL,
+    REFUSED,
+)
 from jointbench.station.screen.plot_numbers import numbers
 
 Trace = Mapping[str, object]
+PALETTE = (MODEL, REFUSED, GOOD, LAW, *MEMBERS[:2])
+"""Roles by number, for figures of other packages; see `drawing.palette`."""
+GREY = GUIDE
 
 
 def line(
