@@ -32,7 +32,6 @@ SECOND_HOMES = {
 NOT_AT_START = (
     "scipy",
     "numba",
-    "plotly",
     "matplotlib",
     "filterpy",
     "grpc",

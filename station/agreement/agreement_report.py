@@ -14,6 +14,7 @@ from jointbench.station.agreement.agreement_text import (
     pair_rows,
     sentences,
 )
+from jointbench.station.drawing.palette import MEASURED, MODEL
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import (
@@ -26,7 +27,7 @@ from jointbench.station.screen.page_parts import (
     Tile,
 )
 from jointbench.station.screen.plot_numbers import numbers
-from jointbench.station.screen.traces import PALETTE, line
+from jointbench.station.screen.traces import line
 
 _MOST_FRFS = 9
 
@@ -138,7 +139,7 @@ def _differences(one: Agreement) -> Figure:
             "arrayminus": numbers(100 * (value - ends[:, 0])),
             "symmetric": False,
         },
-        "marker": {"color": PALETTE[0], "size": 8},
+        "marker": {"color": MODEL, "size": 8},
     }
     x = axis("measured natural frequency [Hz]")
     return figure([trace], x, axis("computed over measured - 1 [%]", zeroline=True))
@@ -146,12 +147,12 @@ def _differences(one: Agreement) -> Figure:
 
 def _frf(one: Agreement, i: int, j: int) -> Figure:
     curves = [
-        line(one.frequency, np.abs(one.measured_frf[i, j]), "measured"),
+        line(one.frequency, np.abs(one.measured_frf[i, j]), "measured", color=MEASURED),
         line(
             one.frequency,
             np.abs(one.computed_frf[i, j]),
             "computed",
-            color=PALETTE[1],
+            color=MODEL,
             dash="dash",
         ),
     ]

@@ -9,9 +9,10 @@ from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.analysis.gap.chain.chain_records import ChainLink
 from jointbench.station.chain.chain_words import chain_headline
 from jointbench.station.chain.examine_chain import ExaminedChain
-from jointbench.station.report.gap_bars import AFTER, BEFORE, LEGEND, MEASURED
+from jointbench.station.drawing.palette import MEASURED, MEMBERS
+from jointbench.station.report.gap_bars import AFTER, BEFORE, LEGEND
 from jointbench.station.screen.figures import Figure, axis, figure
-from jointbench.station.screen.traces import PALETTE, Trace, line, markers
+from jointbench.station.screen.traces import Trace, line, markers
 from jointbench.station.screen.value_text import engineering
 
 HEIGHT = 620
@@ -65,27 +66,22 @@ def chain_figure(done: ExaminedChain) -> Figure:
 
 def _headings(done: ExaminedChain) -> list[dict[str, object]]:
     headings = [
-        (text + (_MARK if link in done.found.links else ""), x, y, link)
+        (text + (_MARK if link in done.found.links else ""), x, y)
         for link, (text, x, y) in _HEADINGS.items()
     ]
     last = "4 hits: ring-down" if done.response is not None else "4 modes"
     found = [
         {
-            "text": f"<b>{text}</b>",
+            "text": text,
             "showarrow": False,
-            "font": {
-                "size": 13,
-                "color": PALETTE[1] if link in done.found.links else "#1c2733",
-            },
             **_corner(x, y),
         }
-        for text, x, y, link in headings
+        for text, x, y in headings
     ]
     found.append(
         {
-            "text": f"<b>{last}</b>",
+            "text": last,
             "showarrow": False,
-            "font": {"size": 13},
             **_corner(0.56, 0.36),
         }
     )
@@ -115,7 +111,7 @@ def _heights(surfaces: tuple[Surface, ...]) -> list[Trace]:
         place = 1e3 * step * np.arange(z.size)
         height = 1e6 * np.where(seen, z - np.median(z[seen]), np.nan)
         shift = shift - (np.nanmax(height) if k else 0.0)
-        color = PALETTE[3 + k]
+        color = MEMBERS[k % len(MEMBERS)]
         found.append(
             line(place, height + shift, one.name, color=color, width=1, legend=False)
         )

@@ -24,7 +24,7 @@ from jointbench.station.screen.page_parts import (
     Tile,
 )
 
-_SAVE = "The camera above the picture saves it as SVG for a talk."
+_SAVE = "Save as SVG writes it for a talk."
 _CAPTION = (
     "Surfaces, stiffness of the joint over the preload, FRF and ring-down: measured, "
     "by the law of the surfaces alone, and with what was named. Each preload is "
@@ -46,6 +46,7 @@ def chain_report(done: ExaminedChain, *, simulated: bool = False) -> Report:
         simulated=simulated,
         tiles=_tiles(done),
         sections=chain_sections(done),
+        findings=(f"{done.found.reason[:1].upper()}{done.found.reason[1:]}",),
     )
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The laws of measured surfaces in a report: table, reasons and a picture."""
 
+from itertools import cycle
+
 import numpy as np
 
 from jointbench.analysis.contact.spectral.measured_laws import LawCurve
@@ -12,6 +14,7 @@ from jointbench.station.contact.measured_words import (
     surface_lines,
     verdict_lines,
 )
+from jointbench.station.drawing.palette import GUIDE, LAW, MEMBERS
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import (
     DataTable,
@@ -20,9 +23,9 @@ from jointbench.station.screen.page_parts import (
     Section,
     Text,
 )
-from jointbench.station.screen.traces import PALETTE, Trace, band, line
+from jointbench.station.screen.traces import Trace, band, line
 
-_BAND_OPACITY = "22"
+_COLOURS = (LAW, *MEMBERS)
 _CAPTION = (
     "Normal stiffness per apparent area over nominal pressure. Thick: the law applies; "
     "dotted: outside its range. Bands: 95 %; of fractal laws, from the measured sample "
@@ -44,7 +47,7 @@ def measured_section(found: MeasuredPrediction) -> Section:
 def law_figure(found: MeasuredPrediction) -> Figure:
     """Return stiffness per area against pressure, for all laws, with bands."""
     traces: list[Trace] = []
-    for curve, color in zip(found.curve, PALETTE * 2, strict=False):
+    for curve, color in zip(found.curve, cycle(_COLOURS), strict=False):
         traces += _curve(curve, color)
     marks = [
         {
@@ -54,7 +57,7 @@ def law_figure(found: MeasuredPrediction) -> Figure:
             "yref": "paper",
             "y0": 0,
             "y1": 1,
-            "line": {"color": "#8a97a5", "width": 1, "dash": "dash"},
+            "line": {"color": GUIDE, "width": 1, "dash": "dash"},
         }
         for load in found.preloads
     ]
@@ -74,7 +77,7 @@ def _curve(curve: LawCurve, color: str) -> list[Trace]:
         curve.low[shown],
         curve.high[shown],
         f"{curve.law}, 95 %",
-        color=color + _BAND_OPACITY,
+        color=color,
     )
     inside = np.array([not said for said in curve.outside])[shown]
     k = curve.stiffness[shown]

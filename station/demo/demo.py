@@ -34,6 +34,7 @@ from jointbench.station.pipeline.contact_prediction import contact_json
 from jointbench.station.pipeline.modal_notes import modal_notes
 from jointbench.station.pipeline.modal_summary import modal_json
 from jointbench.station.pipeline.surface_json import surface_json
+from jointbench.station.report.gap_sentences import headline
 from jointbench.station.report.joint_section import side_by_side
 from jointbench.station.report.modal_table import show_modal
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
@@ -213,7 +214,16 @@ def _write_files(
     page = compose(
         analysis, bench, title="Two bodies on a bolted joint", extra=(section,)
     )
-    page = replace(page, sections=(*page.sections, *gap_sections(gap)))
+    met = sum(one.passed for one in comparisons)
+    findings = (
+        f"{met} of {len(comparisons)} estimates are within their limits of the "
+        "simulated truth.",
+        *page.findings,
+        f"Second session, a model that lacks an effect: {headline(gap.found)}.",
+    )
+    page = replace(
+        page, sections=(*page.sections, *gap_sections(gap)), findings=findings
+    )
     write_report(page, out / "report.html")
     write_json(str(out / "summary.json"), summary)
 

@@ -17,10 +17,11 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
 from jointbench.analysis.gap.diagnosis.contact_diagnosis import ContactDiagnosis
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.station.drawing.palette import LAW, MEASURED, MODEL, REFUSED
 from jointbench.station.report.gap_sentences import effect_words
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.traces import PALETTE, Trace, line, markers
+from jointbench.station.screen.traces import Trace, line, markers
 
 _TITLES = {
     "kn": "normal stiffness",
@@ -68,11 +69,11 @@ def joint_figure(done: ContactDiagnosis, quantity: int) -> Figure:
     traces = _points(bench, quantity)
     # The law before any fit shows how far the surfaces alone are from the joint.
     nominal = np.zeros(done.base.n_base)
-    traces.append(_curve(bench, nominal, None, quantity, "law, nominal inputs", 3))
-    traces.append(_curve(bench, done.base.base, None, quantity, "law, fitted", 1))
+    traces.append(_curve(bench, nominal, None, quantity, "law, nominal inputs", LAW))
+    traces.append(_curve(bench, done.base.base, None, quantity, "law, fitted", REFUSED))
     if done.best is not done.base:
         label = f"with {effect_words(words_of(done.best.candidates))}"
-        traces.append(_curve(bench, done.best.base, done.best, quantity, label, 2))
+        traces.append(_curve(bench, done.best.base, done.best, quantity, label, MODEL))
     title, unit = _TITLES[key], UNITS[quantity]
     if quantity >= _FIRST_DAMPING and _known_frequency(bench):
         title, unit = f"{title} times angular frequency", "N/m"
@@ -118,7 +119,12 @@ def _points(bench: ContactBench, quantity: int) -> list[Trace]:
             error = CONTACT.interval_z * sd[chosen] * value
             shown = None if symbol == "arrow-bar-up" else error
             found.append(
-                markers(preload[chosen], value, name, symbol=symbol, error=shown)
+                markers(
+                    *(preload[chosen], value, name),
+                    color=MEASURED,
+                    symbol=symbol,
+                    error=shown,
+                )
             )
     return found
 
@@ -129,7 +135,7 @@ def _curve(
     fit: Fit | None,
     quantity: int,
     label: str,
-    color: int,
+    color: str,
 ) -> Trace:
     """Return a predicted quantity over preload, without scatter of the states."""
     mean = base.copy()
@@ -143,7 +149,7 @@ def _curve(
         preload[chosen],
         value[chosen],
         label,
-        color=PALETTE[color],
+        color=color,
         dash="dot" if label.startswith("law, nominal") else "solid",
     )
 

@@ -10,13 +10,14 @@ from jointbench.analysis.gap.model.curve_records import (
     ModeEvidence,
 )
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeCurve
+from jointbench.station.drawing.palette import GUIDE, MEASURED, MEMBERS, MODEL
 from jointbench.station.report.gap_sentences import effect_words
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.traces import GREY, PALETTE, Trace, band, line
+from jointbench.station.screen.traces import Trace, band, line
 
 _NORMAL_95 = 1.959964
-_SHADE = "rgba(11, 92, 171, 0.18)"
+_COLOURS = (MODEL, *MEMBERS)
 _NO_LAW = "without a law"
 _CAPTION = (
     "Change of natural frequency, and damping ratio, over the amplitude of the "
@@ -109,7 +110,7 @@ def curve_figure(mode: ModeEvidence) -> Figure:
                     curve.amplitude,
                     level,
                     _label(match),
-                    color=GREY if last else PALETTE[place % len(PALETTE)],
+                    color=GUIDE if last else _COLOURS[(place - 1) % len(_COLOURS)],
                     dash="dash" if last else "solid",
                     axes=(x, y),
                     legend=number == 0,
@@ -147,10 +148,12 @@ def _measured(
 ) -> list[Trace]:
     """Return a measured curve with its band."""
     wide = _NORMAL_95 * sd
-    shade = band(curve.amplitude, value - wide, value + wide, "", color=_SHADE)
+    shade = band(curve.amplitude, value - wide, value + wide, "", color=MEASURED)
     placed: list[Trace] = [
         {**trace, "xaxis": axes[0], "yaxis": axes[1], "showlegend": False}
         for trace in shade
     ]
-    drawn = line(curve.amplitude, value, "measured", axes=axes, legend=legend)
+    drawn = line(
+        curve.amplitude, value, "measured", color=MEASURED, axes=axes, legend=legend
+    )
     return [*placed, drawn]

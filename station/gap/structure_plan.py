@@ -11,23 +11,24 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
+from jointbench.station.drawing.palette import GUIDE, MEMBERS, MODEL
 from jointbench.station.files.json_file import read_json
 from jointbench.station.report.gap_sentences import place
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import Plot, Report, Section
-from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
+from jointbench.station.screen.traces import Trace, line, markers
 
 Place = tuple[float, float, float]
-NAMED_COLOR = PALETTE[0]
+NAMED_COLOR = MODEL
 """As the bars of the model with the effect; the base model has the next color."""
 _HEIGHT = 480
 _TILT = np.array([[1.0, -0.45, 0.0], [0.0, 0.35, 1.0]])
 """Oblique view: x to the right, z up, y backwards to the left."""
 _LOOK = {
-    "bolts": ("circle", PALETTE[2], "middle left"),
-    "feet": ("square", PALETTE[3], "middle right"),
-    "hammer points": ("triangle-down", PALETTE[4], "middle right"),
-    "sensors": ("diamond", PALETTE[5], "top center"),
+    "bolts": ("circle", MEMBERS[0], "middle left"),
+    "feet": ("square", MEMBERS[1], "middle right"),
+    "hammer points": ("triangle-down", MEMBERS[2], "middle right"),
+    "sensors": ("diamond", MEMBERS[3], "top center"),
 }
 """Symbol, color and place of the name, of each kind of place."""
 _ROOM = "   "
@@ -201,7 +202,7 @@ def _edges(plan: StructurePlan, sites: Sequence[str]) -> list[Trace]:
     traces = []
     for name, box in zip(plan.bodies, plan.boxes, strict=True):
         named = f"body:{name}" in sites
-        color, width = (NAMED_COLOR, 3.0) if named else (GREY, 1.0)
+        color, width = (NAMED_COLOR, 3.0) if named else (GUIDE, 1.0)
         for edge in _EDGES:
             x, y = _flat(box[list(edge)])
             traces.append(line(x, y, "bodies", color=color, width=width, legend=False))
@@ -242,6 +243,6 @@ def _body_names(plan: StructurePlan) -> list[dict[str, object]]:
     for name, box in zip(plan.bodies, plan.boxes, strict=True):
         (x,), (y,) = _flat(box[1:2]).round(1).tolist()
         place_of = {"x": x, "y": y, "xanchor": "right", "yanchor": "bottom"}
-        font = {"size": 12, "color": GREY}
+        font = {"size": 12, "color": GUIDE}
         found.append({"text": name, "showarrow": False, "font": font, **place_of})
     return found

@@ -11,10 +11,11 @@ from jointbench.analysis.gap.surface_bench.predicted_structure import (
     predicted_structure,
 )
 from jointbench.analysis.gap.surface_bench.surface_diagnosis import SurfaceDiagnosis
+from jointbench.station.drawing.palette import MEASURED, MODEL, REFUSED
 from jointbench.station.report.gap_sentences import effect_words
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.traces import PALETTE, Trace, line, markers
+from jointbench.station.screen.traces import Trace, line, markers
 
 _TWO_SD = 2.0
 
@@ -48,11 +49,13 @@ def structure_figure(done: SurfaceDiagnosis) -> Figure:
     rows = done.bench.rows
     lag = rows.structure.lag
     traces: list[Trace] = [
-        markers(1e6 * lag, 1e12 * rows.structure.value, "measured", size=5)
+        markers(
+            1e6 * lag, 1e12 * rows.structure.value, "measured", color=MEASURED, size=5
+        )
     ]
     for fit, label, color in _fits(done):
         value = 1e12 * predicted_structure(done.bench, fit, lag)
-        traces.append(line(1e6 * lag, value, label, color=PALETTE[color]))
+        traces.append(line(1e6 * lag, value, label, color=color))
     return figure(traces, axis("lag [µm]", log=True), axis("S [µm^2]", log=True))
 
 
@@ -64,11 +67,13 @@ def spectrum_figure(done: SurfaceDiagnosis) -> Figure:
     power = unit * sample.power
     error = _TWO_SD * power / np.sqrt(sample.count)
     traces: list[Trace] = [
-        markers(wave, power, "measured", size=5, error=_shown(error, power))
+        markers(
+            wave, power, "measured", color=MEASURED, size=5, error=_shown(error, power)
+        )
     ]
     for fit, label, color in _fits(done):
         density = unit * predicted_spectrum(done.bench, fit)
-        traces.append(line(wave, density, label, color=PALETTE[color]))
+        traces.append(line(wave, density, label, color=color))
     return figure(
         traces, axis("wavelength [µm]", log=True), axis("density [µm^3]", log=True)
     )
@@ -79,11 +84,11 @@ def _shown(error: FloatArray, power: FloatArray) -> FloatArray:
     return np.asarray(np.minimum(error, 0.95 * power))
 
 
-def _fits(done: SurfaceDiagnosis) -> list[tuple[Fit, str, int]]:
-    found = [(done.base, "self-affine", 1)]
+def _fits(done: SurfaceDiagnosis) -> list[tuple[Fit, str, str]]:
+    found = [(done.base, "self-affine", REFUSED)]
     if done.best is not done.base:
         words = effect_words(words_of(done.best.candidates))
-        found.append((done.best, f"with {words}", 2))
+        found.append((done.best, f"with {words}", MODEL))
     return found
 
 

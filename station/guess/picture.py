@@ -9,10 +9,11 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import software_version
 from jointbench.signal.hits.plausibility import active_share
+from jointbench.station.drawing.palette import MEASURED
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import Plot, Report, Section, Text
-from jointbench.station.screen.traces import PALETTE, line
+from jointbench.station.screen.traces import line
 
 _BLOCKS = " ▁▂▃▄▅▆▇█"
 _WIDTH = 60
@@ -45,7 +46,7 @@ def write_picture(path: Path, recording: Recording, notes: list[str]) -> None:
     ):
         unit = _SI[channel.quantity.value]
         kept = max(1, values.size // _MOST_POINTS)
-        trace = line(time[::kept], values[::kept], channel.name, color=PALETTE[0])
+        trace = line(time[::kept], values[::kept], channel.name, color=MEASURED)
         drawn = figure(
             [trace],
             axis("time [s]"),

@@ -11,6 +11,7 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.meshes.elements import ELEMENTS
 from jointbench.analysis.structures.meshes.mesh import outer_faces
+from jointbench.station.drawing.palette import GUIDE, MEMBERS, MODEL
 from jointbench.station.joint_files.export_files import WrittenFile
 from jointbench.station.joint_files.export_run import JointExport
 from jointbench.station.screen.figures import Figure
@@ -25,13 +26,11 @@ from jointbench.station.screen.page_parts import (
     Tile,
 )
 from jointbench.station.screen.plot_numbers import numbers
-from jointbench.station.screen.traces import PALETTE
 from jointbench.station.screen.value_text import with_sd
 
 # Length of the drawn axes, as a share of the size of the structure.
 _AXIS_SHARE = 0.12
-_AXES = (("normal", PALETTE[1]), ("t1", PALETTE[0]), ("t2", PALETTE[2]))
-_BODY_COLORS = ("#b8c2cc", "#dfe5ea")
+_AXES = tuple(zip(("normal", "t1", "t2"), MEMBERS, strict=False))
 
 
 def write_joint_page(
@@ -87,7 +86,7 @@ def joint_figure(joint: JointExport) -> Figure:
             "mode": "markers",
             "name": "area of the joint",
             **_places(face.points.position),
-            "marker": {"size": 2, "color": PALETTE[3]},
+            "marker": {"size": 2, "color": MODEL},
         }
     )
     traces += _arrows(joint, _AXIS_SHARE * size)
@@ -119,7 +118,7 @@ def _body(structure: Structure, at: int) -> dict[str, object]:
         "name": structure.bodies[at].name,
         **_places(mesh.nodes[used]),
         **{key: corner[:, k].tolist() for k, key in enumerate("ijk")},
-        "color": _BODY_COLORS[at % len(_BODY_COLORS)],
+        "color": GUIDE,
         "opacity": 0.25,
         "hoverinfo": "name",
         "flatshading": True,

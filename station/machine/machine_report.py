@@ -15,6 +15,7 @@ from jointbench.analysis.structures.machine.machine_result import (
     VariantResult,
 )
 from jointbench.analysis.structures.machine.reduce_machine import ReducedMachine
+from jointbench.station.drawing.palette import GUIDE, MODEL
 from jointbench.station.machine.machine_shapes import shape_plots
 from jointbench.station.machine.machine_text import (
     TextTable,
@@ -39,14 +40,14 @@ from jointbench.station.screen.page_parts import (
     Text,
     Tile,
 )
-from jointbench.station.screen.plot_numbers import numbers, thin
-from jointbench.station.screen.traces import PALETTE, Trace, band, line
+from jointbench.station.screen.plot_numbers import thin
+from jointbench.station.screen.traces import Trace, band, heatmap, line
 
-_GLUED, _JOINTED = PALETTE[1], PALETTE[0]
-_SHADE = "rgba(11, 92, 171, 0.18)"
+_GLUED, _JOINTED = GUIDE, MODEL
 _MOST_POINTS = 4000
+_SMALL_SHARE = 0.005
+"""Share of the energy below which a region is left out [-]."""
 _SHAPES = 4
-_BARS = (*PALETTE, "#94a3b8", "#c08457", "#65a30d", "#be185d", "#0891b2", "#a16207")
 
 
 def write_machine_report(
@@ -143,29 +144,30 @@ def _tiles(result: MachineResult) -> tuple[Tile, ...]:
 def _energies(result: MachineResult) -> list[Item]:
     found: list[Item] = []
     for word, one in (("jointed", result.jointed), ("glued", result.glued)):
-        modes = one.modes
-        names = [f"{value:.4g} Hz" for value in modes.natural_frequency]
-        traces: list[Trace] = [
-            {
-                "type": "bar",
-                "name": region,
-                "x": names,
-                "y": numbers(100 * modes.energy.share[:, at]),
-                "marker": {"color": _BARS[at % len(_BARS)]},
-            }
-            for at, region in enumerate(modes.energy.regions)
-            if modes.energy.share[:, at].max() > 0.005
+        energy = one.modes.energy
+        names = [
+            f"{at + 1}: {value:.4g} Hz"
+            for at, value in enumerate(one.modes.natural_frequency)
         ]
-        plot = figure(
-            traces,
-            axis("mode", type="category"),
-            axis("share of strain energy [%]", range=[0, 100]),
-            barmode="stack",
-            legend={"orientation": "v", "x": 1.02, "y": 1.0},
-        )
-        found.append(
-            Plot(f"energy-{word}", f"Energy of bodies and joints, {word}", plot)
-        )
+        shown = [
+            at
+            for at in range(len(energy.regions))
+            if energy.share[:, at].max() > _SMALL_SHARE
+        ]
+        share = 100 * energy.share[:, shown].T
+        trace: Trace = {
+            **heatmap([], [], share, "%"),
+            "x": names,
+            "y": [energy.regions[at] for at in shown],
+            "text": [[f"{value:.0f}" for value in row] for row in share],
+            "zmin": 0,
+            "zmax": 100,
+        }
+        rows = axis("body or joint", type="category") | {"autorange": "reversed"}
+        plot = figure([trace], axis("mode", type="category"), rows)
+        caption = f"Share of bodies and joints in the strain energy [%], {word}."
+        height = 120 + 30 * len(shown)
+        found.append(Plot(f"energy-{word}", caption, plot, height))
     return found
 
 
@@ -177,7 +179,7 @@ def _receptances(result: MachineResult) -> list[Item]:
         if soft.interval is not None:
             low, high = 1e9 * soft.interval[:, at]
             label = "jointed, 95 % of the joints' uncertainty"
-            traces += band(soft.frequency, low, high, label, color=_SHADE)
+            traces += band(soft.frequency, low, high, label, color=MODEL)
         traces.append(_receptance_line(rigid.frequency, rigid.response[at, at], False))
         traces.append(_receptance_line(soft.frequency, soft.response[at, at], True))
         plot = figure(
@@ -218,7 +220,7 @@ def _lobes(result: MachineResult) -> list[Item]:
         low, high = (np.full(2, 1e3 * one) for one in result.limit_interval)
         ends = 60 * result.jointed.chatter.speed[[0, -1]]
         label = "jointed, every speed, 95 %"
-        traces = [*band(ends, low, high, label, color=_SHADE), *traces]
+        traces = [*band(ends, low, high, label, color=MODEL), *traces]
     plot = figure(
         traces, axis("spindle speed [1/min]"), axis("width of cut [mm]", log=True)
     )

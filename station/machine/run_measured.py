@@ -20,6 +20,7 @@ from jointbench.analysis.structures.measured.frf_coupling import (
     couple_frfs,
 )
 from jointbench.signal.frf.frf import Frf
+from jointbench.station.drawing.palette import MODEL
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.machine.measured_bodies import read_body
@@ -31,13 +32,12 @@ from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Report, Section
 from jointbench.station.screen.terminal import console, table, working, write_json
-from jointbench.station.screen.traces import PALETTE, band, line
+from jointbench.station.screen.traces import band, line
 from jointbench.station.screen.value_text import with_sd
 
 _Labels = Mapping[str, Sequence[str]]
 _COLUMNS = ("mode", "frequency [Hz]", "damping [%]")
 _TITLE = "Modes of the coupled bodies (± one standard deviation)"
-_SHADE = "rgba(11, 92, 171, 0.18)"
 _WIDE = 1.96
 
 
@@ -168,7 +168,7 @@ def _plot(frf: Frf, at: int, name: str) -> Plot:
     if frf.variance is not None:
         wide = 1e9 * _WIDE * np.sqrt(frf.variance[at, at] / 2.0)
         low = np.maximum(size - wide, 1e-3 * size)
-        traces += band(frf.frequency, low, size + wide, "95 %", color=_SHADE)
-    traces.append(line(frf.frequency, size, "coupled", color=PALETTE[0]))
+        traces += band(frf.frequency, low, size + wide, "95 %", color=MODEL)
+    traces.append(line(frf.frequency, size, "coupled", color=MODEL))
     plot = figure(traces, axis("frequency [Hz]"), axis("receptance [nm/N]", log=True))
     return Plot(f"frf-{at}", f"{name} to {name}, line by line", plot)

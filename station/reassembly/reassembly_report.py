@@ -11,6 +11,7 @@ from jointbench.analysis.gap.reassembly.changed_joint import (
     QuantityOverAssemblies,
     Reassembly,
 )
+from jointbench.station.drawing.palette import GUIDE, MEASURED, MODEL
 from jointbench.station.reassembly.reassembly_text import (
     SCATTER_COLUMNS,
     headline,
@@ -32,9 +33,9 @@ from jointbench.station.screen.page_parts import (
     Text,
     Tile,
 )
-from jointbench.station.screen.traces import GREY, PALETTE, band, line, markers
+from jointbench.station.screen.traces import band, line, markers
 
-_SHADE = "rgba(11, 92, 171, 0.15)"
+_SHADE = MODEL
 
 
 def write_reassembly_report(path: Path, name: str, found: Reassembly) -> None:
@@ -99,7 +100,7 @@ def _figure(
                 rows.level[own],
                 value,
                 "latest assembly" if latest else f"assembly {k + 1}",
-                color=PALETTE[1] if latest else GREY,
+                color=MEASURED if latest else GUIDE,
                 error=1.96 * sd[own] * value,
             )
         )

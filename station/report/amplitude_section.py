@@ -2,14 +2,14 @@
 """The report's section on modes over their amplitude."""
 
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
+from jointbench.station.drawing.palette import MEASURED
 from jointbench.station.pipeline.amplitude_summary import COLUMNS, amplitude_rows
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import DataTable, Plot, Section
-from jointbench.station.screen.traces import PALETTE, Trace, band, line
+from jointbench.station.screen.traces import Trace, band, line
 
 _NORMAL_95 = 1.959964
-_SHADE = "rgba(11, 92, 171, 0.18)"
 
 
 def amplitude_sections(chain: ModalChain) -> tuple[Section, ...]:
@@ -48,10 +48,10 @@ def _curve_plot(number: int, mode: AmplitudeMode) -> Plot:
             value - _NORMAL_95 * sd,
             value + _NORMAL_95 * sd,
             f"{name}, 95 % band",
-            color=_SHADE,
+            color=MEASURED,
         )
         traces += [{**trace, "yaxis": y} for trace in shade]
-        traces.append(line(x, value, name, color=PALETTE[row], axes=("x", y)))
+        traces.append(line(x, value, name, color=MEASURED, axes=("x", y)))
     plot = figure(
         traces,
         axis(f"amplitude at {curve.channel} [{curve.unit}]", log=True, anchor="y2"),

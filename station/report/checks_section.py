@@ -9,13 +9,15 @@ from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.leakage import estimate_leakage
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 from jointbench.signal.modal.mode_ranking import rate_modes
+from jointbench.station.drawing.palette import MEASURED, MEMBERS, MODEL
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import Plot, Section, Text
 from jointbench.station.screen.plot_numbers import thin
-from jointbench.station.screen.traces import PALETTE, line
+from jointbench.station.screen.traces import line
 
 _MOST_POINTS = 3000
+_CURVES = (MEASURED, *MEMBERS[:3])
 
 
 def checks_section(chain: ModalChain) -> Section:
@@ -41,8 +43,8 @@ def _indicators(chain: ModalChain) -> Plot:
     values = cmif(chain.frf)[:, inside]
     frequency = chain.frf.frequency[inside]
     traces = [
-        line(*thin(frequency, row, _MOST_POINTS), f"CMIF {i + 1}", color=PALETTE[i % 6])
-        for i, row in enumerate(values[:4])
+        line(*thin(frequency, row, _MOST_POINTS), f"CMIF {i + 1}", color=_CURVES[i])
+        for i, row in enumerate(values[: len(_CURVES)])
     ]
     traces.append(
         line(
@@ -50,7 +52,7 @@ def _indicators(chain: ModalChain) -> Plot:
                 result.synthesis.frequency, 100 * result.synthesis_error, _MOST_POINTS
             ),
             "synthesis error",
-            color=PALETTE[1],
+            color=MODEL,
             width=1,
             axes=("x", "y2"),
         )

@@ -20,6 +20,7 @@ from jointbench.station.contact.measured_words import (
     surface_lines,
     verdict_lines,
 )
+from jointbench.station.drawing.palette import LAW, MEMBERS
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.joints.measured_faces import predict_faces
@@ -48,7 +49,7 @@ from jointbench.station.screen.page_parts import (
     Text,
 )
 from jointbench.station.screen.terminal import console, table, working, write_json
-from jointbench.station.screen.traces import PALETTE, line
+from jointbench.station.screen.traces import line
 
 LABELS = {
     "load": "preload [N]",
@@ -222,7 +223,7 @@ def _plots(sweep: Sweep, rows: Sequence[SweepRow]) -> tuple[Item, ...]:
                 [row.value for row in kept],
                 [getattr(row.points[i].state, key) or float("nan") for row in kept],
                 f"{point.state.model}, {point.state.mode.value}",
-                color=PALETTE[i % len(PALETTE)],
+                color=(LAW, *MEMBERS)[i % (1 + len(MEMBERS))],
             )
             for i, point in enumerate(kept[0].points)
             if key != "damping" or point.state.damping is not None

@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap, View
+from jointbench.station.drawing.palette import MODEL, REFUSED
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import Trace
 
-MEASURED, BEFORE, AFTER = "#1c2733", "#d1495b", "#0b5cab"
+BEFORE, AFTER = REFUSED, MODEL
 LEGEND = {"orientation": "h", "x": 0, "yanchor": "bottom", "traceorder": "normal"}
 LOWEST_BAR = 0.5
 """Where the bars of chi2/dof start: below 1, so that noise is seen as a short bar."""
 SMALLEST_TOP = 10.0
-MOST_NUMBERED = 6
+_MOST_NUMBERED = 6
 """Most slices with their numbers above the bars; more are legible on hover alone."""
 
 
@@ -70,7 +71,7 @@ def _bar(
         # A logarithmic axis starts bars at its lower end, whatever their base.
         "y": [float(f"{max(value, LOWEST_BAR):.5g}") for value in values],
         "text": [f"{value:.3g}" for value in values],
-        "textposition": "outside" if len(values) <= MOST_NUMBERED else "none",
+        "textposition": "outside" if len(values) <= _MOST_NUMBERED else "none",
         "cliponaxis": False,
         "name": words,
         "showlegend": shown,

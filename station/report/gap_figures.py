@@ -8,15 +8,15 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.evidence_records import RecordEstimates, Spectra
+from jointbench.station.drawing.palette import GUIDE, MEASURED
 from jointbench.station.report.gap_bars import (
     AFTER,
     BEFORE,
     LOWEST_BAR,
-    MEASURED,
     SMALLEST_TOP,
 )
 from jointbench.station.screen.figures import Figure, axis, figure
-from jointbench.station.screen.traces import GREY, Trace, line, markers
+from jointbench.station.screen.traces import Trace, line, markers
 
 
 def pretty(unit: str) -> str:
@@ -49,7 +49,7 @@ def spectrum(
         f[[0, -1]],
         np.ones(2),
         "noise",
-        color=GREY,
+        color=GUIDE,
         dash="dash",
         axes=axes,
         legend=shown,

@@ -6,17 +6,14 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.evidence_records import GapEvidence
 from jointbench.analysis.gap.model.law_curves import LawCurves
+from jointbench.station.drawing.palette import MEMBERS, MODEL
 from jointbench.station.report.gap_sentences import effect_words
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import Plot
-from jointbench.station.screen.traces import PALETTE, Trace, band, line
+from jointbench.station.screen.traces import Trace, band, line
 
 _NORMAL_95 = 1.959964
 _MICRO = 1e6
-_SHADES = (
-    *("rgba(11, 92, 171, 0.18)", "rgba(209, 73, 91, 0.18)"),
-    *("rgba(64, 145, 108, 0.18)", "rgba(120, 120, 120, 0.18)"),
-)
 
 
 def law_plots(evidence: GapEvidence | None) -> tuple[Plot, ...]:
@@ -71,7 +68,7 @@ def _loops(curves: LawCurves) -> list[Trace]:
         x, force = _MICRO * motion, curves.force[number]
         wide = _NORMAL_95 * curves.force_sd[number]
         name = f"{x.max():.3g} µm"
-        color = PALETTE[number % len(PALETTE)]
+        color = MODEL
         for edge in (force - wide, force + wide):
             traces.append(line(x, edge, "", color=color, width=0.6, legend=False))
         traces.append(line(x, force, name, color=color, legend=False))
@@ -89,10 +86,10 @@ def _curve(
     """Return a curve with its band; a mode that has no pole is left out."""
     seen = np.isfinite(value) & np.isfinite(sd)
     x, value, wide = x[seen], value[seen], _NORMAL_95 * sd[seen]
-    shade = band(x, value - wide, value + wide, "", color=_SHADES[mode % len(_SHADES)])
+    shade = band(x, value - wide, value + wide, "", color=MEMBERS[mode % len(MEMBERS)])
     placed: list[Trace] = [
         {**trace, "xaxis": axes[0], "yaxis": axes[1], "showlegend": False}
         for trace in shade
     ]
-    color = PALETTE[mode % len(PALETTE)]
+    color = MEMBERS[mode % len(MEMBERS)]
     return [*placed, line(x, value, name, color=color, axes=axes, legend=bool(name))]

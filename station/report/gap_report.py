@@ -5,6 +5,7 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Gap
 from jointbench.analysis.gap.model.evidence_records import GapEvidence
 from jointbench.analysis.gap.model.scatter_found import hit_words
+from jointbench.station.report.findings.interval_words import value_and_interval
 from jointbench.station.report.gap_bars import view_grid
 from jointbench.station.report.gap_figures import (
     record_estimate_figure,
@@ -44,7 +45,7 @@ SMALL_SHARE = 0.05
 UNDRAWN = ("frequency", "order")
 """Views with too many slices for bars."""
 SUMMARY_HEIGHT = 640
-SAVE_HINT = "The camera above the picture saves it as SVG for a talk."
+SAVE_HINT = "Save as SVG writes it for a talk."
 
 
 def gap_report(found: Diagnosis, *, title: str) -> Report:
@@ -65,13 +66,34 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
         lead=_lead(found, title),
         software=f"{software_version()}: gap",
         simulated=False,
-        tiles=_tiles(found),
+        tiles=(*_tiles(found), *_effect_tiles(found)),
         sections=tuple(section for section in sections if section.items),
+        findings=_findings(found),
+    )
+
+
+def _findings(found: Diagnosis) -> tuple[str, ...]:
+    """Return verdict, its reason and the next step; the title has the effect."""
+    words = [f"Verdict: {found.verdict.value}; {found.reason}."]
+    if next_step(found):
+        words.append(f"Next step: {next_step(found)}.")
+    return tuple(words)
+
+
+def _effect_tiles(found: Diagnosis) -> tuple[Tile, ...]:
+    """Return the parameters of what is missing, with 95 % intervals."""
+    return tuple(
+        Tile(
+            f"{one.name} of {effect.name.replace('_', ' ')}",
+            *value_and_interval(one.value, one.sd, one.unit, prefix=False),
+        )
+        for effect in found.effects
+        for one in effect.parameters
     )
 
 
 def _lead(found: Diagnosis, title: str) -> str:
-    text = f"Campaign {title}. Verdict: {found.verdict.value}."
+    text = f"Campaign {title}."
     if found.evidence is not None and found.evidence.where:
         where = found.evidence.where
         shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)

@@ -9,11 +9,11 @@ import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap
 from jointbench.analysis.gap.model.evidence_records import Curves, GapEvidence
+from jointbench.station.drawing.palette import GOOD, MEASURED
 from jointbench.station.report.gap_bars import (
     AFTER,
     BEFORE,
     LEGEND,
-    MEASURED,
     bar_axes,
     bars,
 )
@@ -23,7 +23,6 @@ from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import Trace, band, line
 
 Deviations = Mapping[str, tuple[float, float]]
-NOISE = "rgba(42, 157, 143, 0.22)"
 TITLE_WIDTH = 76
 SHOWN = 0.6
 """Share of the record's residual in the initial time window; zoom out for more."""
@@ -175,7 +174,7 @@ def _noise_band(curves: Curves, axes: tuple[str, str]) -> list[Trace]:
     place = {"xaxis": axes[0], "yaxis": axes[1]}
     return [
         {**trace, **place}
-        for trace in band(ends, -wide, wide, "noise (± 2 sd)", color=NOISE)
+        for trace in band(ends, -wide, wide, "noise (± 2 sd)", color=GOOD)
     ]
 
 
@@ -187,7 +186,6 @@ def _headings(curves: Curves, view: str) -> list[dict[str, object]]:
         "xanchor": "left",
     }
     shared |= {"y": 0.95, "yanchor": "bottom"}
-    shared |= {"font": {"size": 13, "color": "#5b6b7b"}}
     left = f"record {curves.record}: {curves.channel}, {curves.condition}"
     right = "residual over noise, by frequency"
     if view == PRIORS:

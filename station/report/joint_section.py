@@ -2,11 +2,12 @@
 """The report's section on the joint: contact law compared with identification."""
 
 from jointbench.analysis.lumped.identified import Identification
+from jointbench.station.drawing.palette import GUIDE, LAW, MODEL
 from jointbench.station.pipeline.joint_comparison import ContactPrediction
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.joint_text import interval_text, parameter_text
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.traces import GREY, PALETTE, Trace, band, line, markers
+from jointbench.station.screen.traces import Trace, band, line, markers
 from jointbench.station.screen.value_text import with_sd
 
 
@@ -36,12 +37,13 @@ def _stiffness_plot(
             [point.interval.lower for point in contact.curve],
             [point.interval.upper for point in contact.curve],
             "95 % interval",
-            color="rgba(11, 92, 171, 0.18)",
+            color=LAW,
         ),
         line(
             preload,
             [point.state.normal_stiffness for point in contact.curve],
             f"{contact.at.state.model}, predicted",
+            color=LAW,
         ),
     ]
     if joint is not None:
@@ -71,7 +73,7 @@ def _identified(
         [contact.at.state.preload / 1e3],
         [value.value],
         f"link {link!r}, identified from the modes",
-        color=PALETTE[1],
+        color=MODEL,
         symbol="diamond",
         size=11,
         error=[1.96 * (value.sd or 0.0)],
@@ -81,7 +83,7 @@ def _identified(
 
 def _at_preload(contact: ContactPrediction) -> dict[str, object]:
     x = contact.at.state.preload / 1e3
-    style = {"color": GREY, "width": 1, "dash": "dot"}
+    style = {"color": GUIDE, "width": 1, "dash": "dot"}
     return {
         "type": "line",
         "x0": x,

@@ -3,9 +3,8 @@
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.frf.frf_of_functions import noise_source
+from jointbench.station.drawing.palette import GOOD, GUIDE, MEASURED, MODEL
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.modal_summary import (
     STAGE_COLUMNS,
@@ -14,21 +13,21 @@ from jointbench.station.pipeline.modal_summary import (
 )
 from jointbench.station.report.amplitude_section import amplitude_sections
 from jointbench.station.report.checks_section import checks_section, systematic_words
+from jointbench.station.report.figures.frf_figures import (
+    FRF_UNITS,
+    frf_figures,
+    shown_band,
+)
+from jointbench.station.report.figures.small_multiples import small_multiples
 from jointbench.station.report.shapes_section import shapes_section
 from jointbench.station.schemas.geometry_file import Geometry
 from jointbench.station.screen.figures import Figure, axis, figure
-from jointbench.station.screen.page_parts import DataTable, Plot, Section, Text
+from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.plot_numbers import thin
-from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
+from jointbench.station.screen.traces import line, markers
 from jointbench.station.screen.value_text import with_sd
 
 MOST_POINTS = 4000
-HALF_TURN = 180.0
-UNITS = {
-    FrfKind.RECEPTANCE: "m/N",
-    FrfKind.MOBILITY: "m/(N s)",
-    FrfKind.ACCELERANCE: "m/(N s²)",
-}
 
 
 def modal_sections(
@@ -36,7 +35,11 @@ def modal_sections(
 ) -> tuple[Section, ...]:
     """Return the sections FRF, stabilisation, modes, amplitude, shapes, checks."""
     return (
-        Section("frf", "Frequency response", (_frf_plot(chain), Text(_window(chain)))),
+        Section(
+            "frf",
+            "Frequency response",
+            (*_frf_items(chain), Text(_window(chain))),
+        ),
         Section("stabilisation", "Stabilisation", (_stabilisation_plot(chain),)),
         Section(
             "modes",
@@ -49,42 +52,15 @@ def modal_sections(
     )
 
 
-def shown_band(frf: Frf) -> IntArray:
-    """Return the indices of the lines shown: the excited band with a margin."""
-    low, high = frf.usable_band or (frf.frequency[0], frf.frequency[-1])
-    return np.flatnonzero(
-        (frf.frequency >= 0.9 * low)
-        & (frf.frequency <= 1.05 * high)
-        & (frf.frequency > 0)
-    )
-
-
-def _frf_plot(chain: ModalChain) -> Plot:
-    frf, synthesis = chain.frf, chain.result.synthesis
-    lines = shown_band(frf)
-    traces: list[Trace] = []
-    for number, (output, column) in enumerate(np.ndindex(frf.response.shape[:2])):
-        color = PALETTE[number % len(PALETTE)]
-        label = f"{frf.outputs[output].rstrip('@')} / hit {frf.inputs[column]}"
-        pair = (output, column)
-        traces += _one_frf(frf, synthesis, lines, pair, label, color)
-    plot = figure(
-        traces,
-        axis("frequency [Hz]", anchor="y3"),
-        axis(f"|H| [{UNITS[frf.kind]}]", log=True, domain=[0.46, 1.0]),
-        yaxis2=axis(
-            "phase [deg]",
-            domain=[0.22, 0.42],
-            range=[-185, 185],
-            tickvals=[-180, 0, 180],
-        ),
-        yaxis3=axis("coherence [-]", domain=[0.0, 0.18], range=[0, 1.05]),
-    )
-    caption = (
+def _frf_items(chain: ModalChain) -> list[Item]:
+    """Return a small figure of each FRF; those of the driving point come first."""
+    frf = chain.frf
+    title = (
         f"{frf.kind.value.capitalize()} from {_source(chain)}: magnitude, measured "
         "(solid) and synthesised from the modes (dashed); phase; ordinary coherence."
     )
-    return Plot("frf-plot", caption, plot, 620)
+    plots = frf_figures(frf, chain.result.synthesis)
+    return small_multiples(title, plots, "FRFs")
 
 
 def _source(chain: ModalChain) -> str:
@@ -105,61 +81,6 @@ def _estimate(chain: ModalChain) -> dict[str, str | float | int] | None:
     return next(steps, None)
 
 
-def _one_frf(
-    frf: Frf,
-    synthesis: Frf,
-    lines: IntArray,
-    pair: tuple[int, int],
-    label: str,
-    color: str,
-) -> list[Trace]:
-    frequency = frf.frequency[lines]
-    response = frf.response[pair][lines]
-    x, magnitude = thin(frequency, np.abs(response), MOST_POINTS)
-    traces = [line(x, magnitude, label, color=color, width=1.2)]
-    inside = np.isin(synthesis.frequency, frequency)
-    fitted, shape = synthesis.frequency[inside], synthesis.response[pair][inside]
-    x, magnitude = thin(fitted, np.abs(shape), MOST_POINTS)
-    traces.append(
-        line(x, magnitude, f"{label}, synthesis", color="#1c2733", dash="dash")
-    )
-    traces.append(
-        line(
-            *_phase(frequency, response),
-            label,
-            color=color,
-            width=1,
-            axes=("x", "y2"),
-            legend=False,
-        )
-    )
-    if frf.coherence is not None:
-        x, coherence = thin(frequency, frf.coherence[pair][lines], MOST_POINTS // 2)
-        traces.append(
-            line(
-                x,
-                coherence,
-                label,
-                color=color,
-                width=1,
-                axes=("x", "y3"),
-                legend=False,
-            )
-        )
-    return traces
-
-
-def _phase(
-    frequency: FloatArray, response: ComplexArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return frequency and phase [deg], with a gap wherever the phase wraps."""
-    every = max(1, frequency.size // MOST_POINTS)
-    phase = np.degrees(np.angle(response[::every]))
-    wraps = np.flatnonzero(np.abs(np.diff(phase)) > HALF_TURN)
-    phase[wraps] = np.nan
-    return frequency[::every], phase
-
-
 def _stabilisation_plot(chain: ModalChain) -> Plot:
     table = chain.result.stabilisation
     frf = chain.frf
@@ -168,12 +89,12 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
     x, y = thin(frf.frequency[lines], total, MOST_POINTS)
     loose = ~table.stable
     traces = [
-        line(x, y, "mean |H|", color="#c2ccd6", width=1.2, axes=("x", "y2")),
+        line(x, y, "mean |H|", color=MEASURED, width=1.2, axes=("x", "y2")),
         markers(
             table.frequency[loose],
             table.order[loose],
             "not stable",
-            color=GREY,
+            color=GUIDE,
             symbol="x-thin-open",
             size=4,
         ),
@@ -181,7 +102,7 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
             table.frequency[table.stable],
             table.order[table.stable],
             "stable in frequency, damping and shape",
-            color=PALETTE[2],
+            color=GOOD,
             size=5,
         ),
     ]
@@ -190,7 +111,7 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
         axis("frequency [Hz]", range=[float(x[0]), float(x[-1])]),
         axis("model order"),
         yaxis2=axis(
-            f"mean |H| [{UNITS[frf.kind]}]",
+            f"mean |H| [{FRF_UNITS[frf.kind]}]",
             log=True,
             overlaying="y",
             side="right",
@@ -214,7 +135,7 @@ def _mode_line(frequency: float) -> Figure:
         "y1": 1,
         "yref": "paper",
         "layer": "below",
-        "line": {"color": PALETTE[1], "width": 1},
+        "line": {"color": MODEL, "width": 1},
     }
 
 

@@ -13,10 +13,18 @@ from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.registry import Entry
 from jointbench.acquisition.file_access.quoting import visible
+from jointbench.station.drawing.figure_markup import figure_markup
 from jointbench.station.report.session_analysis import SessionAnalysis
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.geometry_file import Geometry
-from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
+from jointbench.station.screen.page_parts import (
+    DataTable,
+    Item,
+    ItemGroup,
+    Plot,
+    Section,
+    Text,
+)
 
 logger = logging.getLogger(__name__)
 
@@ -120,8 +128,17 @@ def _plain_item(item: Item, identifier: str) -> Item:
             tuple(tuple(map(_plain, row)) for row in item.rows),
             frozenset(map(_plain, item.bad_words)),
         )
+    if isinstance(item, ItemGroup):
+        parts = tuple(
+            _plain_item(one, f"{identifier}-{place}")
+            for place, one in enumerate(item.items)
+        )
+        return ItemGroup(
+            _plain(item.title), parts, "grid" if item.kind == "grid" else "fold"
+        )
     _require(item, Plot)
     figure = json.loads(json.dumps(item.figure))
+    figure_markup(figure, height=int(item.height))  # what cannot be drawn fails here
     return replace(
         item,
         identifier=identifier,

@@ -6,15 +6,15 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.registry import Registry
 from jointbench.acquisition.records.provenance import Step
-from jointbench.acquisition.records.recordings import Verdict
 from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.analysis.contact.model_catalogue import contact_law_package
-from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.report.figures.torque_trends import trends_section
+from jointbench.station.report.findings.session_findings import session_findings
+from jointbench.station.report.findings.session_tiles import session_tiles
 from jointbench.station.report.frf_analysis import (
     analyse_frfs,
     is_frf_input,
@@ -39,13 +39,16 @@ from jointbench.station.schemas.geometry_file import (
     geometry_beside_frfs,
     read_geometry,
 )
-from jointbench.station.screen.joint_text import interval_text
 from jointbench.station.screen.page import placed_sections, write_report
-from jointbench.station.screen.page_parts import DataTable, Report, Section, Text, Tile
+from jointbench.station.screen.page_parts import (
+    DataTable,
+    ItemGroup,
+    Report,
+    Section,
+    Text,
+)
 from jointbench.station.screen.terminal import console, write_json
-from jointbench.station.screen.value_text import engineering, with_sd
 
-MODES_IN_TILE = 3
 LONGEST_DETAIL = 300
 
 
@@ -136,8 +139,9 @@ def compose(
         lead=_lead(analysis),
         software=session.software,
         simulated=session.simulated,
-        tiles=_tiles(analysis, bench),
+        tiles=session_tiles(analysis, joint_link(bench)),
         sections=tuple(sections),
+        findings=session_findings(analysis, joint_link(bench)),
     )
 
 
@@ -206,78 +210,15 @@ def _lead(analysis: SessionAnalysis) -> str:
     return ". ".join(part.rstrip(".") for part in parts if part) + "."
 
 
-def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, ...]:
-    tiles: list[Tile] = []
-    if analysis.recordings:
-        tiles.append(_hits_tile(analysis))
-    tiles += _mode_tiles(analysis)
-    for chain in analysis.surfaces:
-        scaling = chain.fit.scaling
-        value = (
-            "-" if scaling is None else with_sd(scaling.dimension, scaling.dimension_sd)
-        )
-        tiles.append(Tile(f"D of {chain.surface.name}", value, chain.fit.verdict.value))
-    if analysis.joint is not None:
-        stiffness = analysis.joint.parameter(f"{joint_link(bench)}.stiffness")
-        tiles.append(_joint_tile(stiffness))
-    if analysis.contact is not None:
-        state = analysis.contact.at.state
-        value = engineering(state.normal_stiffness, "N/m")
-        tiles.append(Tile("joint stiffness, contact law", value, state.model))
-    return tuple(tiles)
-
-
-def _joint_tile(stiffness: JointParameter) -> Tile:
-    title = "joint stiffness, from modes"
-    if not stiffness.identifiable:
-        return Tile(title, f"{interval_text(stiffness.interval)} N/m", "not determined")
-    sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
-    return Tile(title, engineering(stiffness.value, "N/m"), sd)
-
-
-def _hits_tile(analysis: SessionAnalysis) -> Tile:
-    verdicts = [
-        hit.verdict for recording in analysis.recordings for hit in recording.hits
-    ]
-    good = sum(verdict is Verdict.OK for verdict in verdicts)
-    return Tile("hits accepted", f"{good} of {len(verdicts)}", _why_not(verdicts))
-
-
-def _why_not(verdicts: list[Verdict]) -> str:
-    bad = [verdict.value for verdict in verdicts if verdict is not Verdict.OK]
-    return ", ".join(f"{bad.count(word)} {word}" for word in dict.fromkeys(bad))
-
-
-def _mode_tiles(analysis: SessionAnalysis) -> list[Tile]:
-    several = len(analysis.preloads) > 1
-    return [
-        tile
-        for one in analysis.preloads
-        for tile in _tiles_of(one.modal, at_words(one.preload) if several else "")
-    ]
-
-
-def _tiles_of(chain: ModalChain, at: str) -> list[Tile]:
-    model = chain.result.model
-    count = model.natural_frequency.size
-    tiles = [
-        Tile(
-            f"mode {number + 1}{at}",
-            f"{frequency:.2f} Hz",
-            f"± {model.frequency_sd[number]:.2g} Hz, "
-            f"damping {100 * model.damping_ratio[number]:.3g} %",
-        )
-        for number, frequency in enumerate(model.natural_frequency[:MODES_IN_TILE])
-    ]
-    if count > MODES_IN_TILE:
-        more = str(count - MODES_IN_TILE)
-        tiles.append(Tile(f"further modes{at}", more, "see the table"))
-    return tiles
+def _trends(view: SessionView) -> list[Section]:
+    section = trends_section(view.analysis.preloads)
+    return [] if section is None else [section]
 
 
 _SECTIONS = (
     ReportSection("remarks", _remarks),
     ReportSection("hits", _hits),
+    ReportSection("trends", _trends),
     ReportSection("modes", _modes),
     ReportSection("surfaces", _surfaces),
     ReportSection("joint", _joint),
@@ -315,12 +256,14 @@ def _provenance(
         law = analysis.contact.at.state.model
         rows.append(("contact", law, f"package {contact_law_package(law)}"))
     rows += [("report", f"section {name}", f"package {p}") for name, p in added]
+    steps = tuple(dict.fromkeys(rows))
     table = DataTable(
         "Every step from the instrument to the numbers above.",
         ("of", "step", "detail"),
-        tuple(dict.fromkeys(rows)),
+        steps,
     )
-    return Section("provenance", "Provenance", (table,))
+    fold = ItemGroup(f"{len(steps)} steps from the instrument to the numbers", (table,))
+    return Section("provenance", "Provenance", (fold,))
 
 
 def _detail(step: Step) -> str:

@@ -7,19 +7,21 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.modal.modal_mass import NormalisedShapes, mass_normalise
 from jointbench.signal.modal.shape_checks import check_shapes
+from jointbench.station.drawing.palette import GUIDE, MODEL
 from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.report.figures.small_multiples import small_multiples
 from jointbench.station.schemas.geometry_file import DrawnShapes, Geometry, draw_shapes
-from jointbench.station.screen.figures import FONT, Figure, figure
+from jointbench.station.screen.figures import Figure, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.plot_numbers import numbers
-from jointbench.station.screen.traces import GREY, PALETTE, heatmap
+from jointbench.station.screen.traces import heatmap
 
-_FRAMES = 16
-_MILLISECONDS = 60
-_CYCLES = 30
 # Largest movement as a share of the size of what is drawn.
 _AMPLITUDE = 0.15
 _FEWEST_POINTS = 2
+_HEIGHT = 250
+_MOST_NUMBERS = 12
+"""Modes up to which the MAC is written into its map."""
 
 
 def shapes_section(chain: ModalChain, geometry: Geometry | None) -> Section:
@@ -39,49 +41,44 @@ def shapes_section(chain: ModalChain, geometry: Geometry | None) -> Section:
     if len(drawn.names) < _FEWEST_POINTS:
         items.append(Text("One point was measured: there is no shape to draw."))
     else:
-        items += [_drawing(chain, drawn), _mac(chain)]
+        items += small_multiples(_title(drawn), _drawings(chain, drawn), "shapes")
+        items.append(_mac(chain))
     items.append(_table(chain))
     return Section("shapes", "Mode shapes", tuple(items))
 
 
-def _drawing(chain: ModalChain, drawn: DrawnShapes) -> Plot:
-    extent = float(np.max(np.ptp(drawn.place, axis=0))) or 1.0
-    moved = [_moved(drawn, mode, 0, extent) for mode in range(drawn.motion.shape[0])]
-    still = _wire(drawn, drawn.place, "at rest", GREY, 2)
-    frames = [
-        {
-            "name": f"{mode}-{k}",
-            "traces": [1],
-            "data": [_coordinates(drawn, _moved(drawn, mode, k, extent))],
-        }
-        for mode in range(drawn.motion.shape[0])
-        for k in range(_FRAMES)
-    ]
-    drawing = figure(
-        [still, _wire(drawn, moved[0], "shape", PALETTE[0], 5)],
-        {},
-        {},
-        scene=_scene(drawn, extent),
-        updatemenus=[_menu(chain)],
-        legend={"x": 1.0, "xanchor": "right", "y": 1.0},
-        margin={"l": 0, "r": 0, "t": 50, "b": 0},
-    )
+def _title(drawn: DrawnShapes) -> str:
     where = (
         "on the geometry given"
         if drawn.measured
         else "points in a row in measured order; --geometry gives their positions"
     )
-    caption = (
-        f"Mode shapes, {where}. Select a mode above to animate it; drag to rotate."
+    return (
+        f"Mode shapes, {where}: at rest, displaced, and half a cycle later (dotted). "
+        "Play moves a shape; drag to rotate."
     )
-    return Plot("shapes-plot", caption, {**drawing, "frames": frames}, 480)
 
 
-def _moved(drawn: DrawnShapes, mode: int, frame: int, extent: float) -> FloatArray:
-    turn = np.exp(2j * np.pi * frame / _FRAMES)
-    return np.asarray(
-        drawn.place + _AMPLITUDE * extent * (drawn.motion[mode] * turn).real
-    )
+def _drawings(chain: ModalChain, drawn: DrawnShapes) -> list[Plot]:
+    """Return a scene of each mode."""
+    extent = float(np.max(np.ptp(drawn.place, axis=0))) or 1.0
+    scene = _scene(drawn, extent)
+    plots = []
+    for mode, frequency in enumerate(chain.result.model.natural_frequency):
+        motion = _AMPLITUDE * extent * drawn.motion[mode]
+        data = [
+            _wire(drawn, drawn.place, "at rest", GUIDE, 2),
+            _wire(drawn, drawn.place + motion.real, "shape", MODEL, 5),
+        ]
+        swing = {
+            "trace": 1,
+            "real": _coordinates(drawn, motion.real),
+            "imaginary": _coordinates(drawn, motion.imag),
+        }
+        drawing = {**figure(data, {}, {}, scene=scene), "swing": swing}
+        caption = f"mode {mode + 1}: {frequency:.6g} Hz"
+        plots.append(Plot(f"shapes-plot-{mode + 1}", caption, drawing, _HEIGHT))
+    return plots
 
 
 def _coordinates(drawn: DrawnShapes, place: FloatArray) -> dict[str, object]:
@@ -109,7 +106,7 @@ def _wire(
 
 
 def _scene(drawn: DrawnShapes, extent: float) -> Figure:
-    """Return fixed axes, so that the view stays still during animation."""
+    """Return axes with room for the motion."""
     unit = f" [{drawn.unit}]" if drawn.measured else ""
     room = 1.2 * _AMPLITUDE * extent
     low, high = drawn.place.min(axis=0) - room, drawn.place.max(axis=0) + room
@@ -124,39 +121,16 @@ def _scene(drawn: DrawnShapes, extent: float) -> Figure:
     return {**axes, "aspectmode": "data", "dragmode": "turntable"}
 
 
-def _menu(chain: ModalChain) -> Figure:
-    """Return a menu with one entry per mode and one that stops the animation."""
-    play = {
-        "mode": "immediate",
-        "frame": {"duration": _MILLISECONDS, "redraw": True},
-        "transition": {"duration": 0},
-    }
-    entries: list[Figure] = [
-        {
-            "label": f"mode {mode + 1}: {frequency:.6g} Hz",
-            "method": "animate",
-            "args": [[f"{mode}-{k}" for k in range(_FRAMES)] * _CYCLES, play],
-        }
-        for mode, frequency in enumerate(chain.result.model.natural_frequency)
-    ]
-    stop = {"label": "stop", "method": "animate", "args": [[None], play]}
-    return {
-        "buttons": [*entries, stop],
-        "x": 0.0,
-        "y": 1.0,
-        "xanchor": "left",
-        "yanchor": "bottom",
-        "font": {"family": FONT},
-    }
-
-
 def _mac(chain: ModalChain) -> Plot:
     model = chain.result.model
     number = np.arange(1, model.natural_frequency.size + 1)
     mac = check_shapes(model.shapes).mac
-    ticks = {"dtick": 1, "constrain": "domain"}
+    ticks = {"dtick": 1}
+    trace = {**heatmap(number, number, mac, "MAC [-]"), "zmin": 0, "zmax": 1}
+    if number.size <= _MOST_NUMBERS:
+        trace |= {"text": [[f"{value:.2f}" for value in row] for row in mac]}
     plot = figure(
-        [{**heatmap(number, number, mac, "MAC [-]"), "zmin": 0, "zmax": 1}],
+        [trace],
         {"title": {"text": "mode"}, **ticks},
         {
             "title": {"text": "mode"},

@@ -20,6 +20,7 @@ from jointbench.analysis.structures.reduction.reduced_model import (
     motion_of,
     solve_reduced,
 )
+from jointbench.station.drawing.palette import GUIDE
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.joint_text import interval_text
 from jointbench.station.screen.page import write_report
@@ -33,7 +34,7 @@ from jointbench.station.screen.page_parts import (
     Tile,
 )
 from jointbench.station.screen.plot_numbers import numbers
-from jointbench.station.screen.traces import PALETTE, line
+from jointbench.station.screen.traces import line
 from jointbench.station.screen.value_text import with_sd
 
 SHAPES_SHOWN = 6
@@ -139,7 +140,7 @@ def _profiles(result: StructureIdentification) -> list[Item]:
         limit = np.full(profile.value.size, 3.84)
         curves = [
             line(profile.value, rise, "delta chi2"),
-            line(profile.value, limit, "95 %", color=PALETTE[1], dash="dash"),
+            line(profile.value, limit, "95 %", color=GUIDE, dash="dash"),
         ]
         plot = figure(curves, axis(name, log=True), axis("delta chi2 [-]"))
         found.append(Plot(f"profile-{number}", f"Profile of {name}", plot, 280))

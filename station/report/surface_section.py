@@ -6,44 +6,66 @@ from collections.abc import Sequence
 from jointbench.acquisition.records.session import software_version
 from jointbench.station.pipeline.roughness_words import HEADING, roughness_words
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.report.figures.scaling_figures import scaling_figures
+from jointbench.station.report.figures.small_multiples import small_multiples
+from jointbench.station.report.findings.surface_findings import (
+    surface_sentence,
+    surface_tiles,
+)
 from jointbench.station.roughness.texture_figures import texture_items
 from jointbench.station.screen.band_limited_words import COLUMNS as BAND_COLUMNS
 from jointbench.station.screen.band_limited_words import band_lines, band_rows
-from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import (
     DataTable,
     Item,
-    Plot,
+    ItemGroup,
     Report,
     Section,
     Text,
 )
-from jointbench.station.screen.surface_figures import height_plot, spectrum_plots
+from jointbench.station.screen.surface_figures import (
+    SPECTRUM_TITLE,
+    height_plot,
+    spectrum_plots,
+)
 from jointbench.station.screen.surface_kind_words import kind_lines
-from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
 from jointbench.station.screen.value_text import engineering, with_sd
 
+_SCALING = (
+    "Structure function: measured (points), fitted surface as seen through the "
+    "instrument (line) and without the instrument (dotted). Below: local slope of ln S "
+    "over ln lag: constant where the surface is self-affine, 2 where it is smooth, 0 "
+    "for white noise and beyond its longest wavelength."
+)
 BAD = frozenset({"no scaling range", "instrument-limited"})
 
 
 def surface_section(chains: Sequence[SurfaceChain]) -> Section:
-    """Return the section: heights and spectrum of each surface, then all in one."""
-    items: list[Item] = []
-    for number, chain in enumerate(chains):
-        items += _shown(chain, number)
-    items += [_structure_plot(chains), _slope_plot(chains), _table(chains)]
-    items += [_band_table(chains), _instrument_table(chains)]
-    items += texture_items([(c.surface.name, c.texture) for c in chains])
+    """Return the section: verdicts, heights, spectra, scaling, then every table."""
+    items: list[Item] = [_table(chains), _band_table(chains)]
     items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
-    items += [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
-    items += [
-        Text(f"{c.surface.name}: {said}")
+    for number, chain in enumerate(chains):
+        lay = None if chain.band is None else chain.band.lay
+        items.append(height_plot(chain.surface, lay, number))
+    spectra = [
+        plot
+        for number, chain in enumerate(chains)
+        for plot in spectrum_plots(chain.surface, chain.band, number)
+    ]
+    items += small_multiples(SPECTRUM_TITLE, spectra, "spectra")
+    items += small_multiples(_SCALING, scaling_figures(chains), "surfaces")
+    items += texture_items([(c.surface.name, c.texture) for c in chains])
+    items.append(_instrument_table(chains))
+    said = [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
+    said += [
+        Text(f"{c.surface.name}: {words}")
         for c in chains
-        for said in (
+        for words in (
             *band_lines(c.band, c.no_band or "none was asked for"),
             *kind_lines(c.kinds),
         )
     ]
+    items.append(ItemGroup("Reasons and remarks on each surface", tuple(said)))
     return Section("surfaces", "Surfaces", tuple(items))
 
 
@@ -55,75 +77,10 @@ def surface_report(chains: Sequence[SurfaceChain]) -> Report:
         lead=names,
         software=software_version(),
         simulated=False,
-        tiles=(),
+        tiles=surface_tiles(chains),
         sections=(surface_section(chains),),
+        findings=tuple(surface_sentence(chain) for chain in chains),
     )
-
-
-def _shown(chain: SurfaceChain, number: int) -> list[Item]:
-    """Return heights, spectrum and residuals of one surface."""
-    lay = None if chain.band is None else chain.band.lay
-    heights = height_plot(chain.surface, lay, number)
-    return [heights, *spectrum_plots(chain.surface, chain.band, number)]
-
-
-def _structure_plot(chains: Sequence[SurfaceChain]) -> Plot:
-    traces: list[Trace] = []
-    for number, chain in enumerate(chains):
-        color = PALETTE[number % len(PALETTE)]
-        structure = chain.structure
-        name = chain.surface.name
-        traces.append(
-            markers(
-                structure.lag * 1e6, structure.value * 1e12, name, color=color, size=5
-            )
-        )
-        curve = chain.fit.curve
-        if curve is not None:
-            traces.append(
-                line(curve.lag * 1e6, curve.value * 1e12, f"{name}, fit", color=color)
-            )
-            traces.append(
-                line(
-                    curve.lag * 1e6,
-                    curve.surface * 1e12,
-                    f"{name}, without instrument",
-                    color=GREY,
-                    dash="dot",
-                )
-            )
-    plot = figure(
-        traces, axis("lag [µm]", log=True), axis("structure function S [µm²]", log=True)
-    )
-    caption = (
-        "Structure function: measured (points), fitted surface as seen through the "
-        "instrument (line) and without the instrument (dotted)."
-    )
-    return Plot("structure-plot", caption, plot, 420)
-
-
-def _slope_plot(chains: Sequence[SurfaceChain]) -> Plot:
-    traces = [
-        markers(
-            chain.fit.local_slope.lag * 1e6,
-            chain.fit.local_slope.slope,
-            chain.surface.name,
-            color=PALETTE[number % len(PALETTE)],
-            size=5,
-            error=chain.fit.local_slope.sd,
-        )
-        for number, chain in enumerate(chains)
-    ]
-    plot = figure(
-        traces,
-        axis("lag [µm]", log=True),
-        axis("local slope 4 - 2D [-]", range=[-0.2, 2.2]),
-    )
-    caption = (
-        "Local slope of ln S over ln lag: constant where the surface is self-affine, "
-        "2 where it is smooth, 0 for white noise and beyond its longest wavelength."
-    )
-    return Plot("slope-plot", caption, plot, 300)
 
 
 def _table(chains: Sequence[SurfaceChain]) -> DataTable:

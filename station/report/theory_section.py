@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 
+from jointbench.station.drawing.palette import LAW, MEMBERS, MODEL
 from jointbench.station.joints.contact_comparison import unit_of
 from jointbench.station.joints.theory_records import (
     JointQuantity,
@@ -13,7 +14,7 @@ from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.joint_text import interval_text
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.terminal import console, table
-from jointbench.station.screen.traces import PALETTE, Trace
+from jointbench.station.screen.traces import Trace
 
 TITLE = "Identified joint compared with the contact law (95 % intervals)"
 NOTE = (
@@ -105,12 +106,12 @@ def theory_section(rows: Sequence[TheoryRow]) -> Section | None:
 def _plot(quantity: JointQuantity, rows: Sequence[TheoryRow]) -> Plot:
     preload = [row.preload / 1e3 for row in rows]
     known = [row.identified if row.identifiable else None for row in rows]
-    traces = [_points(preload, known, "identified", PALETTE[1])]
+    traces = [_points(preload, known, "identified", MODEL)]
     models = list(dict.fromkeys(name for row in rows for name in row.predicted))
     for number, name in enumerate(models):
         shifted = [one * _APART ** (number + 1) for one in preload]
         found = [row.predicted.get(name) for row in rows]
-        color = PALETTE[(0, 2, 3, 4, 5)[number % 5]]
+        color = (LAW, *MEMBERS)[number % (1 + len(MEMBERS))]
         traces.append(_points(shifted, found, name, color))
     words = quantity.replace("_", " ")
     plot = figure(

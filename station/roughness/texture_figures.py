@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.signal.roughness.uncertain_parameters import MeasuredTexture
+from jointbench.station.drawing.palette import GUIDE, MEASURED, MEMBERS, MODEL
 from jointbench.station.roughness.texture_request import TextureAnswer
 from jointbench.station.roughness.texture_words import (
     COLUMNS,
@@ -14,12 +15,16 @@ from jointbench.station.roughness.texture_words import (
     title_words,
 )
 from jointbench.station.screen.figures import axis, figure
-from jointbench.station.screen.page_parts import DataTable, Item, Plot, Text
+from jointbench.station.screen.page_parts import DataTable, Item, ItemGroup, Plot, Text
 from jointbench.station.screen.plot_numbers import thin
-from jointbench.station.screen.traces import GREY, PALETTE, line
+from jointbench.station.screen.traces import line
 
 _MOST_POINTS = 3000
 _CURVE_POINTS = 201
+_ABBOTT = (
+    "Material ratio (Abbott) curve of the filtered heights, and the equivalent line of "
+    "the central 40 % (dotted), whose fall from 0 to 100 % is the core height."
+)
 
 
 def texture_items(answers: Sequence[tuple[str, TextureAnswer | None]]) -> list[Item]:
@@ -34,13 +39,16 @@ def texture_items(answers: Sequence[tuple[str, TextureAnswer | None]]) -> list[I
         if one.texture.heights.ndim == 1:
             items.append(_traces(one, number))
     if measured:
-        items.append(_abbott(measured))
+        curves = tuple(_abbott(one, number) for number, one in enumerate(measured))
+        items.append(ItemGroup(_ABBOTT, curves, "grid"))
     for name, answer in answers:
         if answer is None:
             continue
         if answer.measured is not None:
             rows = tuple(parameter_rows(answer.measured))
-            items.append(DataTable(title_words(answer.measured), COLUMNS, rows))
+            table = DataTable(title_words(answer.measured), COLUMNS, rows)
+            title = f"{name}: {len(rows)} standard parameters"
+            items.append(ItemGroup(title, (table,)))
         items.append(Text(f"{name}: {'; '.join(answer_lines(answer))}."))
     return items
 
@@ -58,14 +66,14 @@ def _traces(measured: MeasuredTexture, number: int) -> Plot:
         line(
             *thin(place[known], (rough + wave)[known], _MOST_POINTS),
             "primary profile",
-            color=GREY,
+            color=MEASURED,
             width=1,
         ),
-        line(*thin(place, wave, _MOST_POINTS), "L-filter line", color=PALETTE[1]),
+        line(*thin(place, wave, _MOST_POINTS), "L-filter line", color=MODEL),
         line(
             *thin(place[known], (rough + down)[known], _MOST_POINTS),
             "roughness profile (moved down)",
-            color=PALETTE[0],
+            color=MEMBERS[0],
             width=1,
         ),
     ]
@@ -78,7 +86,7 @@ def _traces(measured: MeasuredTexture, number: int) -> Plot:
             "yref": "paper",
             "y0": 0,
             "y1": 1,
-            "line": {"color": GREY, "width": 0.8, "dash": "dot"},
+            "line": {"color": GUIDE, "width": 0.8, "dash": "dot"},
         }
         for k in range(1, texture.sections)
     ]
@@ -87,28 +95,19 @@ def _traces(measured: MeasuredTexture, number: int) -> Plot:
     return Plot(f"texture-{number}", caption, plot, 340)
 
 
-def _abbott(several: Sequence[MeasuredTexture]) -> Plot:
-    """Return the material ratio curves with their equivalent lines."""
-    traces = []
-    for number, one in enumerate(several):
-        color = PALETTE[number % len(PALETTE)]
-        known = np.sort(one.texture.heights[one.texture.valid])[::-1] * 1e6
-        ratio = np.linspace(0, 1, _CURVE_POINTS)
-        place = np.clip(ratio * known.size - 0.5, 0, known.size - 1)
-        height = np.interp(place, np.arange(known.size), known)
-        traces.append(line(100 * ratio, height, one.surface, color=color))
-        letter = "R" if one.texture.heights.ndim == 1 else "S"
-        ends = _core_line(one, letter)
-        if ends is not None:
-            name = f"{one.surface}, core"
-            traces.append(line([0, 100], ends, name, color=color, dash="dot"))
-    caption = (
-        "Material ratio (Abbott) curve of the filtered heights, and the equivalent "
-        "line of the central 40 % (dotted), whose fall from 0 to 100 % is the core "
-        "height."
-    )
+def _abbott(one: MeasuredTexture, number: int) -> Plot:
+    """Return the material ratio curve of a surface with its equivalent line."""
+    known = np.sort(one.texture.heights[one.texture.valid])[::-1] * 1e6
+    ratio = np.linspace(0, 1, _CURVE_POINTS)
+    place = np.clip(ratio * known.size - 0.5, 0, known.size - 1)
+    height = np.interp(place, np.arange(known.size), known)
+    traces = [line(100 * ratio, height, "measured, filtered", color=MEASURED)]
+    letter = "R" if one.texture.heights.ndim == 1 else "S"
+    ends = _core_line(one, letter)
+    if ends is not None:
+        traces.append(line([0, 100], ends, "line of the core", color=MODEL, dash="dot"))
     plot = figure(traces, axis("material ratio [%]"), axis("z [µm]"))
-    return Plot("abbott-plot", caption, plot, 360)
+    return Plot(f"abbott-plot-{number}", one.surface, plot, 300)
 
 
 def _core_line(one: MeasuredTexture, letter: str) -> list[float] | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A report as data: tiles, sections, and the texts, tables and plots in them."""
+"""A report as data: findings, sections, and the texts, tables and plots in them."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -9,7 +9,7 @@ from jointbench.station.screen.figures import Figure
 
 @dataclass(frozen=True, slots=True)
 class Tile:
-    """One headline number."""
+    """One headline number; its interval stands in the note."""
 
     label: str
     value: str
@@ -46,7 +46,16 @@ class Plot:
     kind: Literal["figure"] = "figure"
 
 
-Item = Text | DataTable | Plot
+@dataclass(frozen=True, slots=True)
+class ItemGroup:
+    """Items that belong together: folded under a title, or small figures in a grid."""
+
+    title: str
+    items: tuple["Item", ...]
+    kind: Literal["fold", "grid"] = "fold"
+
+
+Item = Text | DataTable | Plot | ItemGroup
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +69,18 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The whole content of a report."""
+    """The whole content of a report.
+
+    Attributes:
+        title: of the report.
+        lead: what it is about and where it comes from.
+        software: that made it.
+        simulated: whether instruments were simulated.
+        tiles: numbers with their intervals, the most important first; the report shows
+            six and folds the rest.
+        sections: evidence, in order.
+        findings: what was found, in sentences; they stand before everything else.
+    """
 
     title: str
     lead: str
@@ -68,3 +88,4 @@ class Report:
     simulated: bool
     tiles: tuple[Tile, ...]
     sections: tuple[Section, ...] = field(default=())
+    findings: tuple[str, ...] = field(default=())

@@ -13,13 +13,12 @@ from jointbench.signal.band_limited.spectrum_sections import (
     spectrum_sections,
 )
 from jointbench.signal.surface.levelling import level
+from jointbench.station.drawing.palette import GUIDE, MEASURED, MEMBERS, MODEL
 from jointbench.station.screen.band_limited_words import lay_words
-from jointbench.station.screen.figures import Figure, axis, figure
+from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import Plot
 from jointbench.station.screen.plot_numbers import thin
 from jointbench.station.screen.traces import (
-    GREY,
-    PALETTE,
     Trace,
     heatmap,
     line,
@@ -50,7 +49,10 @@ def _profile_plot(profile: Profile, number: int) -> Plot:
     heights = np.where(profile.valid, profile.heights * 1e6, np.nan)
     kept = np.isfinite(heights)
     trace = line(
-        *thin(position[kept], heights[kept], MOST_POINTS), profile.name, width=1
+        *thin(position[kept], heights[kept], MOST_POINTS),
+        profile.name,
+        color=MEASURED,
+        width=1,
     )
     caption = (
         f"Profile {profile.name}, levelled: {profile.heights.size} heights every "
@@ -102,7 +104,7 @@ def _lay_traces(lay: SurfaceLay, x: FloatArray, y: FloatArray) -> list[Trace]:
         (along, across),
     ]
     traces = []
-    for width, color in ((5.0, "#ffffff"), (2.2, "#d1495b")):
+    for width, color in ((5.0, "#ffffff"), (2.2, "#0b5cab")):
         for u, v in curves:
             traces.append(
                 line(
@@ -116,88 +118,83 @@ def _lay_traces(lay: SurfaceLay, x: FloatArray, y: FloatArray) -> list[Trace]:
     return traces
 
 
+SPECTRUM_TITLE = (
+    "Power spectral density: measured (points), fitted as the instrument shows it "
+    "(line); grey: wavelengths of the stated height, slope and curvature. Below: ln of "
+    "measured over fitted density; bars: two standard deviations of the mean in each "
+    "bin."
+)
+
+
 def spectrum_plots(
     surface: Surface, fit: BandLimitedFit | None, number: int
 ) -> list[Plot]:
-    """Return the spectrum with fit and band, and the residuals of the fit."""
+    """Return the spectrum with fit and band over its residuals; none without one."""
     sections = spectrum_sections(surface, fit)
     if not sections:
         return []
     areal = fit is not None and fit.mapped
     unit, power = ("µm⁴", 1e24) if areal else ("µm³", 1e18)
     what = "over both wavenumbers" if areal else "along the lines, over 1 / wavelength"
-    caption = (
-        f"{surface.name}: power spectral density {what}; measured (points), fitted as "
-        "the instrument shows it (line); grey: wavelengths of the stated height, slope "
-        "and curvature."
-    )
-    spectrum = Plot(
-        f"spectrum-{number}",
-        caption,
-        figure(
-            _spectrum_traces(sections, power),
-            axis("wavelength [µm]", log=True),
-            axis(f"power spectral density [{unit}]", log=True),
-            shapes=_band_shapes(fit),
+    residuals = _residual_traces(sections)
+    shapes, more = _band_shapes(fit), {}
+    if residuals:
+        ends = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": 0, "y1": 0}
+        line_ = {"color": GUIDE, "width": 1}
+        shapes.append({**ends, "yref": "y2", "line": line_})
+        more = {
+            "yaxis2": axis(
+                "ln measured / fitted [-]", range=[-1.5, 1.5], domain=[0.0, 0.34]
+            )
+        }
+    plot = figure(
+        [*_spectrum_traces(sections, power), *residuals],
+        axis("wavelength [µm]", log=True),
+        axis(
+            f"power spectral density [{unit}]",
+            log=True,
+            domain=[0.34 if residuals else 0.0, 1.0],
         ),
-        360,
+        shapes=shapes,
+        **more,
     )
-    residuals = _residual_figure(sections)
-    if residuals is None:
-        return [spectrum]
-    said = (
-        f"{surface.name}: ln of measured over fitted density; bars: two standard "
-        "deviations of the mean in each bin."
-    )
-    return [spectrum, Plot(f"residuals-{number}", said, residuals, 240)]
+    return [Plot(f"spectrum-{number}", f"{surface.name}, {what}", plot, 470)]
 
 
 def _spectrum_traces(sections: Sequence[SpectrumSection], power: float) -> list[Trace]:
     traces: list[Trace] = []
     for k, one in enumerate(sections):
-        color = PALETTE[k % len(PALETTE)]
+        color = _section_colour(k, len(sections))
         place = 1e6 * one.wavelength
         name = one.name or "measured"
         traces.append(markers(place, power * one.measured, name, color=color, size=4))
         if one.fitted is not None:
             said = f"{one.name}, fit" if one.name else "fit"
-            traces.append(line(place, power * one.fitted, said, color=color))
+            traces.append(line(place, power * one.fitted, said, color=MODEL))
     return traces
 
 
-def _residual_figure(sections: Sequence[SpectrumSection]) -> Figure | None:
+def _section_colour(at: int, count: int) -> str:
+    """Return the colour of one of several sections of a spectrum."""
+    return MEASURED if count == 1 else MEMBERS[at % len(MEMBERS)]
+
+
+def _residual_traces(sections: Sequence[SpectrumSection]) -> list[Trace]:
     traces: list[Trace] = []
     for k, one in enumerate(sections):
         residual = one.residual
         if residual is not None:
-            traces.append(
-                markers(
-                    1e6 * one.wavelength,
-                    residual,
-                    one.name or "residual",
-                    color=PALETTE[k % len(PALETTE)],
-                    size=4,
-                    error=_TWO_SD / np.sqrt(one.count),
-                )
+            points = markers(
+                1e6 * one.wavelength,
+                residual,
+                "",
+                color=_section_colour(k, len(sections)),
+                size=4,
+                axes=("x", "y2"),
+                error=_TWO_SD / np.sqrt(one.count),
             )
-    if not traces:
-        return None
-    return figure(
-        traces,
-        axis("wavelength [µm]", log=True),
-        axis("ln measured / fitted [-]", range=[-1.5, 1.5]),
-        shapes=[
-            {
-                "type": "line",
-                "xref": "paper",
-                "x0": 0,
-                "x1": 1,
-                "y0": 0,
-                "y1": 0,
-                "line": {"color": GREY, "width": 1},
-            }
-        ],
-    )
+            traces.append({**points, "showlegend": False})
+    return traces
 
 
 def _band_shapes(fit: BandLimitedFit | None) -> list[dict[str, object]]:
@@ -212,7 +209,7 @@ def _band_shapes(fit: BandLimitedFit | None) -> list[dict[str, object]]:
             "x1": 1e6 * fit.moments.longest,
             "y0": 0,
             "y1": 1,
-            "fillcolor": "rgba(138,151,165,0.12)",
+            "fillcolor": GUIDE,
             "line": {"width": 0},
             "layer": "below",
         }

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Traces of a plot: lines, points, bands and maps in plotly.js's own format."""
+"""Traces of a figure as plain dictionaries: lines, points, bands and maps.
+
+Keys are those of plotly.js, of which `station.drawing` draws this part: `scatter`,
+`bar`, `heatmap`, `scatter3d` and `mesh3d` on linear, logarithmic and category axes.
+"""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,11 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jointbench.station.drawing.palette import (
+    GOOD,
+    GUIDE,
+    LAW,
+    MEMBERS,
+    MODEL,
+    REFUSED,
+)
 from jointbench.station.screen.plot_numbers import numbers
 
 Trace = Mapping[str, object]
-PALETTE = ("#0b5cab", "#d1495b", "#2a9d8f", "#e09f3e", "#7b4b94", "#5b6b7b")
-GREY = "#8a97a5"
+PALETTE = (MODEL, REFUSED, GOOD, LAW, *MEMBERS[:2])
+"""Roles by number, for figures of other packages; see `drawing.palette`."""
+GREY = GUIDE
 
 
 def line(
@@ -19,7 +32,7 @@ def line(
     y: Any,
     name: str,
     *,
-    color: str = PALETTE[0],
+    color: str = MODEL,
     dash: str = "solid",
     width: float = 1.6,
     axes: tuple[str, str] = ("x", "y"),
@@ -44,7 +57,7 @@ def markers(
     y: Any,
     name: str,
     *,
-    color: str = PALETTE[0],
+    color: str = MODEL,
     symbol: str = "circle",
     size: float = 7,
     axes: tuple[str, str] = ("x", "y"),

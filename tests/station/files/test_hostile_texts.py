@@ -181,14 +181,36 @@ def test_no_cell_of_a_table_begins_as_a_formula(cell: str) -> None:
     assert escaped("1 = 1") == "1 = 1"
 
 
-def test_a_name_in_a_figure_is_no_link() -> None:
-    """plotly.js takes tags in texts for markup; only own line breaks are kept."""
+def test_a_name_in_a_figure_is_text() -> None:
+    """Names stand in legends, at points and in what is read aloud: never as markup."""
     name = "a<br>b<a href='https://x'>c</a>\u202e"
-    figure = {"data": [{"name": name, "x": [1.0]}], "layout": {}}
+    trace = {
+        "name": name,
+        "mode": "markers+text",
+        "text": [name],
+        "x": [1.0],
+        "y": [1.0],
+    }
+    axes = {"xaxis": {"title": {"text": name}}, "annotations": [{"text": name, "x": 1}]}
+    figure = {"data": [trace, {**trace, "name": f"{name}2"}], "layout": axes}
     plot = Plot("p", "caption", figure)
+    solid = {**trace, "type": "scatter3d", "z": [1.0]}
+    scene = Plot("q", "caption", {"data": [solid], "layout": {}})
     table = DataTable("t", ("c",), ((name,),))
-    page = render(Report("t", "", "", False, (), (Section("s", "s", (plot, table)),)))
-    figures = page.partition('id="figures">')[2].partition("</script>")[0]
-    assert r"a\u003cbr\u003eb\u0026lt;a href=" in figures
-    assert r"\u003ca" not in figures
-    assert "\u202e" not in page.partition("<script")[0]
+    section = Section("s", "s", (plot, scene, table))
+    page = render(Report("t", "", "", False, (), (section,)))
+    assert page.count("a&lt;br&gt;b&lt;a href=") >= 6
+    assert r"a\u003cbr\u003eb\u003ca" in page
+    assert "<a href='https" not in page
+    assert "<br>" not in page
+    assert "\u202e" not in page
+
+
+def test_a_colour_in_a_figure_is_a_colour() -> None:
+    """What is no colour is drawn in the colour of the model."""
+    bad = "red;} body{display:none"
+    line = {"x": [0, 1], "y": [0, 1], "line": {"color": bad, "dash": bad, "width": bad}}
+    plot = Plot("p", "caption", {"data": [line], "layout": {}})
+    page = render(Report("t", "", "", False, (), (Section("s", "s", (plot,)),)))
+    assert "display:none" not in page.partition("</style>")[2]
+    assert '<path class="ln c-model"' in page

@@ -136,6 +136,7 @@ def test_a_recipe_asks_for_them_with_its_cut_offs():
 def test_a_report_has_traces_curve_and_table():
     items = texture_items([("sine", texture_answer(sine(), ASKED)), ("other", None)])
     kinds = [item.kind for item in items]
-    assert kinds == ["figure", "figure", "table", "text"]
-    assert items[1].identifier == "abbott-plot"
-    assert len(items[2].rows) == 16
+    assert kinds == ["figure", "grid", "fold", "text"]
+    assert [one.identifier for one in items[1].items] == ["abbott-plot-0"]
+    (table,) = items[2].items
+    assert len(table.rows) == 16
