@@ -194,13 +194,27 @@ def modal_chain(
     Raises:
         BadData: no usable hit, channels missing, or no mode above the noise.
     """
+    chain = linear_chain(judged, settings, run, preload)
+    return _amplitude_stage(chain, run, at_words(preload))
+
+
+def linear_chain(
+    judged: Sequence[Recording],
+    settings: ChainSettings,
+    run: StageRun,
+    preload: float | None = None,
+) -> ModalChain:
+    """Run the stages up to the modes, see `modal_chain`: no curves over amplitude.
+
+    Raises:
+        BadData: no usable hit, channels missing, or no mode above the noise.
+    """
     at = at_words(preload)
     measured = _frf_stage(judged, settings, run, at)
     result = _modes_stage(measured.frf, settings, run, at)
     result = _without_harmonics(result, measured)
     filled = _fill_stage(judged, result, settings, run, at)
-    whole = _chain_of(judged, measured, result)
-    return _amplitude_stage(filled[0] if filled else whole, run, at)
+    return filled[0] if filled else _chain_of(judged, measured, result)
 
 
 def _without_harmonics(result: ModalResult, measured: MeasuredFrf) -> ModalResult:

@@ -122,7 +122,6 @@ def refit_chosen(
     chosen: Sequence[PoleCandidate],
     pinned: BoolArray,
     steps: Sequence[Step] = (),
-    begin: ComplexArray | None = None,
 ) -> ChosenFit:
     """Refine chosen poles on the FRF and fit their residues.
 
@@ -134,15 +133,13 @@ def refit_chosen(
         chosen: one a mode; may be none.
         pinned: which keep frequency and damping, shape (n_chosen,).
         steps: how they were chosen, for the provenance of the model.
-        begin: poles of an earlier fit [rad/s], where the search begins, same shape;
-            None for the chosen ones.
 
     Returns:
         The model with its synthesis.
     """
     frf, provenance = basis.frf, (*basis.frf.provenance, *steps)
     if not chosen:
-        return _nothing(basis, (*provenance,))
+        return _nothing(basis, provenance)
     start = np.array([c.pole for c in chosen], complex)
     poles = refine_poles(
         basis.lines,
@@ -150,7 +147,6 @@ def refit_chosen(
         basis.variance,
         beyond=basis.beyond,
         doubt=np.where(pinned, np.inf, 1.0),
-        begin=start if begin is None else np.where(pinned, start, begin),
         steps=_STEPS,
     )
     fitted = _fitted(basis, start, poles)
