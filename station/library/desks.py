@@ -10,6 +10,7 @@ from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.signal.modal.chosen_poles.pole_evidence import PoleEvidence
 from jointbench.station.desk.desk_choice import ChoiceAction, plain_who
+from jointbench.station.desk.desk_pages import hits_page
 from jointbench.station.desk.desk_results import (
     choice_lines,
     opened_desk,
@@ -59,6 +60,15 @@ class ModalDesk(Shown):
     def pin(self, frequency: float, order: int) -> "ModalDesk":
         """Choose a pole, and keep its frequency and damping as they are at an order."""
         return self._after(ChoiceAction.PIN, frequency=frequency, order=order)
+
+    def drop_hit(self, number: int) -> "ModalDesk":
+        """Leave a hit out of the average, counted from 1, and compute again."""
+        known = hits_page(self.state)
+        if not 1 <= number <= len(known):
+            raise UsageError(f"there are {len(known)} hits on the desk, no {number}")
+        hit = known[number - 1]
+        name, time = hit["recording"], hit["time_s"]
+        return self._after(ChoiceAction.DROP_HIT, name=name, time=time)
 
     def undo(self) -> "ModalDesk":
         """Take the last choice back."""
