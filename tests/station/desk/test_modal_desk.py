@@ -57,7 +57,9 @@ def test_a_box_clears_the_poles_in_it_and_no_other(opened: ModalDesk) -> None:
     """The mode at 300 Hz goes; the fit without it is worse, and says so."""
     cleared = opened.clear(280.0, 320.0)
     assert found(cleared).size == 2
-    before, after = (summary_page(d.state)["synthesis_error"] for d in (opened, cleared))
+    before, after = (
+        summary_page(d.state)["synthesis_error"] for d in (opened, cleared)
+    )
     assert after > 10.0 * before
 
 
