@@ -121,7 +121,7 @@ def desk_command(
     no_browser: NoBrowser = False,
     debug: Debug = False,
 ) -> None:
-    """Choose poles in the browser: stabilisation, shapes, joint and gap.
+    """Choose poles in the browser, with live refits and shapes.
 
     Click a pole to choose it, draw a box to clear, pin or merge; the fit follows at
     once. Each choice is written to the results beside the session, with who and when;

@@ -95,7 +95,7 @@ def pole_row(table: Stabilisation, frequency: float, order: int, ratio: float) -
 def located(choice: DeskChoice, table: Stabilisation) -> DeskChoice:
     """Return a choice of a pole with the values of the pole that it means.
 
-    The log then says which one it was, whoever asked for it and how.
+    The log then holds which one it was, whoever asked for it and how.
 
     Raises:
         UsageError: no pole within 1 %.

@@ -3,7 +3,7 @@
 
 The log of choices is only ever added to: taking one back is a choice as well. It
 travels in the provenance of the results, so that whoever reads them sees who chose
-what, and the desk goes on where it stopped.
+what, and the desk continues where it stopped.
 """
 
 import math

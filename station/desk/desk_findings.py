@@ -40,7 +40,7 @@ def findings_beside(subject: DeskSubject) -> tuple[Findings, ...]:
     """Return what lies beside a session: JSON of `identify` and `gap`, and results.
 
     Args:
-        subject: on the desk; its first file tells the folder.
+        subject: on the desk; its first file gives the folder.
 
     Returns:
         Newest first; those named like the session before all others. A file that is

@@ -21,7 +21,7 @@ from jointbench.station.pipeline.chain import (
     ModalChain,
     frf_chain,
     judge_hits,
-    linear_chain,
+    modal_chain,
 )
 from jointbench.station.pipeline.recordings_by_preload import (
     at_words,
@@ -191,7 +191,8 @@ def automatic_chain(
             settings = replace(settings, estimator=Estimator(one.name))
         elif one.action in {ChoiceAction.DROP_HIT, ChoiceAction.KEEP_HIT}:
             recordings = tuple(_rejudged(r, one) for r in recordings)
-    return linear_chain(recordings, settings, run, subject.preload)
+    # Poles on one curve over amplitude stay apart: they are what is chosen from.
+    return modal_chain(recordings, settings, run, subject.preload, over_amplitude=False)
 
 
 def hit_time(recording: Recording, trigger: int) -> float:

@@ -4,8 +4,8 @@
 import numpy as np
 
 from jointbench.signal.modal.shape_checks import check_shapes
-from jointbench.station.desk.desk_pages import Page
 from jointbench.station.desk.desk_state import DeskState
+from jointbench.station.desk.frf_pages import Page
 from jointbench.station.schemas.geometry_file import draw_shapes
 from jointbench.station.screen.plot_numbers import numbers
 

@@ -10,7 +10,6 @@ from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.signal.modal.chosen_poles.pole_evidence import PoleEvidence
 from jointbench.station.desk.desk_choice import ChoiceAction, plain_who
-from jointbench.station.desk.desk_pages import hits_page
 from jointbench.station.desk.desk_results import (
     choice_lines,
     opened_desk,
@@ -23,6 +22,7 @@ from jointbench.station.desk.desk_state import (
     made_choice,
 )
 from jointbench.station.desk.desk_subject import DeskRequest, desk_subjects
+from jointbench.station.desk.frf_pages import hits_page
 from jointbench.station.library.argument_checks import (
     checked_band,
     require_texts,

@@ -175,6 +175,8 @@ def modal_chain(
     settings: ChainSettings,
     run: StageRun,
     preload: float | None = None,
+    *,
+    over_amplitude: bool = True,
 ) -> ModalChain:
     """Run the stages that follow the hits.
 
@@ -187,24 +189,10 @@ def modal_chain(
         settings: of the chain.
         run: store and source.
         preload: of these recordings [N], part of the names of the stages.
+        over_amplitude: whether the modes are resolved over their amplitude.
 
     Returns:
         The chain, its recordings with lost samples filled.
-
-    Raises:
-        BadData: no usable hit, channels missing, or no mode above the noise.
-    """
-    chain = linear_chain(judged, settings, run, preload)
-    return _amplitude_stage(chain, run, at_words(preload))
-
-
-def linear_chain(
-    judged: Sequence[Recording],
-    settings: ChainSettings,
-    run: StageRun,
-    preload: float | None = None,
-) -> ModalChain:
-    """Run the stages up to the modes, see `modal_chain`: no curves over amplitude.
 
     Raises:
         BadData: no usable hit, channels missing, or no mode above the noise.
@@ -214,7 +202,8 @@ def linear_chain(
     result = _modes_stage(measured.frf, settings, run, at)
     result = _without_harmonics(result, measured)
     filled = _fill_stage(judged, result, settings, run, at)
-    return filled[0] if filled else _chain_of(judged, measured, result)
+    whole = filled[0] if filled else _chain_of(judged, measured, result)
+    return _amplitude_stage(whole, run, at) if over_amplitude else whole
 
 
 def _without_harmonics(result: ModalResult, measured: MeasuredFrf) -> ModalResult:

@@ -4,6 +4,16 @@
 import { deskScreen } from "./desk_frame.js";
 import { el, fill } from "./dom.js";
 import { shown } from "./numbers.js";
+import { withSd } from "./uncertain.js";
+
+/** @type {Record<string, string>} */
+const VERDICTS = {
+  none: "Nothing is missing",
+  named: "A missing effect was named",
+  ambiguous: "Several effects explain it equally well",
+  mostly: "Most of what is missing was named",
+  unknown: "Something is missing that no known effect explains",
+};
 
 deskScreen("Joint and gap", async (desk, place) => async () => {
   const found = await desk.get("findings");
@@ -44,7 +54,7 @@ function jointPart(found) {
   const { content } = found;
   const rows = Object.entries(content.parameters);
   return [
-    el("p", { class: "verdict-line" }, String(content.verdict)),
+    el("p", { class: "verdict-line" }, `Joint: ${content.verdict}`),
     ...(content.reasons ?? []).map((/** @type {string} */ one) => el("p", { class: "note" }, one)),
     el("div", { class: "scroll" }, el("table", {},
       el("thead", {}, el("tr", {}, ...["parameter", "value", "95 % interval", "unit"].map((one, i) => (
@@ -54,8 +64,8 @@ function jointPart(found) {
         return el("tr", {},
           el("td", { class: "words" }, name),
           el("td", {}, value.identifiable === false ? "not determined"
-            : `${shown(value.value)}${value.sd ? ` ± ${shown(value.sd, 2)}` : ""}`),
-          el("td", {}, (value.interval_95 ?? []).map((/** @type {any} */ end) => shown(end, 3)).join(" to ")),
+            : withSd(value.value, value.sd)),
+          el("td", {}, (value.interval_95 ?? []).map((/** @type {any} */ end) => shown(end, 5)).join(" to ")),
           el("td", {}, value.unit));
       })))),
     modesPart(content.modes),
@@ -71,7 +81,7 @@ function modesPart(modes) {
     el("thead", {}, el("tr", {}, ...["measured [Hz]", "model [Hz]", "difference [%]"].map((one) => el("th", {}, one)))),
     el("tbody", {}, ...modes.map((one) => el("tr", {},
       el("td", {}, shown(one.measured_hz, 6)), el("td", {}, shown(one.predicted_hz, 6)),
-      el("td", {}, shown(100 * (one.predicted_hz / one.measured_hz - 1), 2)))))));
+      el("td", {}, (100 * (one.predicted_hz / one.measured_hz - 1)).toFixed(3).replace(/^-(0\.0+)$/, "$1")))))));
 }
 
 /** @param {any} found */
@@ -83,10 +93,10 @@ function gapPart(found) {
     `, confidence ${shown(100 * one.confidence, 3)} %`,
     el("ul", {}, ...Object.entries(one.parameters).map(([name, value]) => {
       const { value: number, sd, unit } = /** @type {any} */ (value);
-      return el("li", {}, `${name} ${shown(number)} ± ${shown(sd, 2)} ${unit}`);
+      return el("li", {}, `${name} = ${withSd(number, sd)} ${unit}`);
     }))));
   return [
-    el("p", { class: "verdict-line" }, String(content.verdict)),
+    el("p", { class: "verdict-line" }, VERDICTS[content.verdict] ?? String(content.verdict)),
     el("p", {}, String(content.reason ?? "")),
     effects.length ? el("ul", {}, ...effects) : null,
     beforeAfter(content),

@@ -3,6 +3,9 @@
 
 import { el, fill } from "./dom.js";
 import { shown } from "./numbers.js";
+import { uncertain } from "./uncertain.js";
+
+const HEADS = ["words", "", "", "wide-only", "", ""];
 
 /**
  * @param {import("./desk_frame.js").Desk} desk
@@ -31,7 +34,7 @@ export function modeTable(desk, chart) {
     return el("table", {},
       el("caption", {}, "± one standard deviation. Tick two to merge them."),
       el("thead", {}, el("tr", {}, ...["", "f [Hz]", "damping [%]", "MPC", "by", ""].map((one, i) => (
-        el("th", i ? {} : { class: "words" }, one))))),
+        el("th", { class: HEADS[i] }, one))))),
       el("tbody", {}, ...modes.map((one, i) => row(one, i))));
   };
   /**
@@ -50,9 +53,9 @@ export function modeTable(desk, chart) {
     });
     return el("tr", {},
       el("td", { class: "words" }, el("label", { class: "tick" }, tick, ` ${i + 1}`)),
-      withSd(one.frequency_hz, one.frequency_sd_hz),
-      withSd(100 * one.damping_ratio, 100 * one.damping_ratio_sd),
-      el("td", {}, shown(one.mpc, 3)),
+      stacked(one.frequency_hz, one.frequency_sd_hz),
+      stacked(100 * one.damping_ratio, 100 * one.damping_ratio_sd),
+      el("td", { class: "wide-only" }, shown(one.mpc, 3)),
       el("td", {}, one.pinned ? "pinned" : one.by_hand ? "hand" : "program"),
       el("td", { class: "acts" },
         el("button", {
@@ -79,9 +82,8 @@ export function modeTable(desk, chart) {
  * @param {number} value
  * @param {number} sd
  */
-function withSd(value, sd) {
-  if (!Number.isFinite(sd) || sd <= 0) return el("td", {}, shown(value, 6));
-  const digits = Math.min(8, Math.max(0, 1 - Math.floor(Math.log10(sd))));
-  return el("td", {}, value.toFixed(digits), el("br"),
-    el("span", { class: "sd" }, `± ${sd.toFixed(digits)}`));
+function stacked(value, sd) {
+  const { value: number, sd: spread, power } = uncertain(value, sd);
+  return el("td", {}, number + power, spread ? el("br") : null,
+    spread ? el("span", { class: "sd" }, `± ${spread}${power}`) : null);
 }

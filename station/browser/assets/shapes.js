@@ -66,7 +66,8 @@ deskScreen("Shapes", async (desk, place) => {
     el("div", { class: "stack" },
       el("section", { class: "panel", "aria-label": "Complexity" }, el("h2", {}, "Complexity"),
         el("p", { class: "note" }, "A real mode lies on one line."), scatter),
-      el("section", { class: "panel", "aria-label": "AutoMAC" }, el("h2", {}, "AutoMAC"), mac))));
+      el("section", { class: "panel", "aria-label": "AutoMAC" }, el("h2", {}, "AutoMAC"),
+        el("p", { class: "note" }, "1 on the diagonal; high values off it are modes that the points cannot distinguish."), mac))));
   return async () => {
     page = await desk.get("shapes");
     now = Math.max(0, Math.min(now, page.modes.length - 1));
@@ -81,7 +82,7 @@ deskScreen("Shapes", async (desk, place) => {
 function macTable(mac) {
   const step = (/** @type {number} */ value) => `mac-${Math.min(5, Math.floor(value * 5 + 1e-9))}`;
   return el("table", { class: "mac" },
-    el("caption", {}, "1 on the diagonal; high values off it are modes that the points cannot distinguish."),
+    el("caption", { class: "unseen" }, "Modal assurance criterion"),
     el("thead", {}, el("tr", {}, el("th", {}, ""), ...mac.map((_, i) => el("th", { scope: "col" }, i + 1)))),
     el("tbody", {}, ...mac.map((row, i) => el("tr", {}, el("th", { scope: "row" }, i + 1),
       ...row.map((value) => el("td", { class: step(value) }, value.toFixed(2)))))));

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pages of the modal desk, and what answers them."""
+"""The screens of the modal desk, and what answers them."""
 
 import json
 from collections.abc import Awaitable, Callable
@@ -13,12 +13,10 @@ from jointbench.station.desk.desk_pages import (
     curves_page,
     diagram_page,
     evidence_page,
-    frf_page,
-    hits_page,
-    matrix_page,
     summary_page,
 )
 from jointbench.station.desk.desk_state import DeskState
+from jointbench.station.desk.frf_pages import frf_page, hits_page, matrix_page
 from jointbench.station.desk.shape_page import shapes_page
 
 if TYPE_CHECKING:
@@ -142,7 +140,7 @@ def _get(make: Callable[["Request"], Any]) -> Endpoint:
         except JointbenchError as error:
             return PlainTextResponse(str(error), 400)
         if content is None:
-            return PlainTextResponse("there is no such page", 404)
+            return PlainTextResponse("there is no such screen", 404)
         return JSONResponse(content)
 
     return answer

@@ -47,7 +47,7 @@ def run_desk(files: Sequence[Path], request: DeskRequest, screen: DeskScreen) ->
     subjects = desk_subjects(files, request)
     who = plain_who(screen.who or getpass.getuser())
     board = DeskBoard(subjects, who, request.geometry)
-    # What cannot be read is said here, before a browser opens.
+    # What cannot be read is refused here, before a browser opens.
     with progress_bar("fitting poles") as progress:
         board.state(0, StageRun(progress=progress))
     serve_screen(

@@ -19,12 +19,11 @@ from jointbench.station.desk.desk_choice import (
 from jointbench.station.desk.desk_pages import (
     diagram_page,
     evidence_page,
-    frf_page,
-    matrix_page,
     summary_page,
 )
 from jointbench.station.desk.desk_results import set_aside
 from jointbench.station.desk.desk_state import made_choice
+from jointbench.station.desk.frf_pages import frf_page, matrix_page
 from jointbench.station.desk.shape_page import shapes_page
 from jointbench.station.library.desks import ModalDesk
 from jointbench.station.results.results_modes import read_run
@@ -54,7 +53,7 @@ def test_the_desk_begins_with_the_automatic_modes(opened: ModalDesk) -> None:
 
 
 def test_a_box_clears_the_poles_in_it_and_no_other(opened: ModalDesk) -> None:
-    """The mode at 300 Hz goes; the fit without it is worse, and says so."""
+    """The mode at 300 Hz is left out, and the fit without it is worse."""
     cleared = opened.clear(280.0, 320.0)
     assert found(cleared).size == 2
     before, after = (
@@ -107,7 +106,7 @@ def test_two_poles_are_merged_into_one(opened: ModalDesk) -> None:
 
 
 def test_undo_returns_to_the_choice_before_and_is_in_the_log(opened: ModalDesk) -> None:
-    """The same modes to the last digit, and three lines that say who and when."""
+    """The same modes to the last digit, and three lines with who and when."""
     once = opened.clear(250.0, 350.0)
     back = once.choose(300.0).undo()
     assert np.array_equal(found(back), found(once))
