@@ -419,7 +419,7 @@ export class PoleChart {
       raised = !raised && x - before < 18;
       before = x;
       context.font = "600 12px system-ui, sans-serif";
-      context.fillText(`${number + 1}${line.pinned ? " ⚲" : ""}`, x, TOP + 1 - (raised ? 13 : 0));
+      context.fillText(`${number + 1}${line.pinned ? " pin" : ""}`, x, TOP + 1 - (raised ? 13 : 0));
     });
   }
 
