@@ -107,16 +107,18 @@ def main() -> None:
 
 
 _PAGE = """# The modal desk: time of a refit
-Written by `python benchmarks/screen/desk.py --page docs/screen-desk-refit.md`. 40 outputs, 2 inputs, 4096 lines, eight modes with a 0.8 % pair at 40 dB, {repeats}
+Written by `python benchmarks/screen/desk.py --page docs/screen-desk-refit.md`.
+40 outputs, 2 inputs, 4096 lines, eight modes with a 0.8 % pair at 40 dB, {repeats}
 repetitions of each choice on one thread. The bar of a live refit is one second.
 
 | choice | CPU, median [s] | CPU, largest [s] | by the clock, median [s] |
 |---|---|---|---|
 {rows}
 
-The computer had other work (load average {load:.1f} on two cores), which the times by the clock include.
-A choice in the browser is a refit, the results file and a few milliseconds of transfer. The refit of chosen poles is one refinement on the weights of the automatic fit
-([record](decisions/0332-refit-on-the-weights-of-the-automatic-fit.md)).
+The computer had other work (load average {load:.1f} on two cores), which the times by
+the clock include. A choice in the browser is a refit, the results file and a few
+milliseconds of transfer. The refit is one refinement on the weights of the automatic
+fit ([record](decisions/0332-refit-on-the-weights-of-the-automatic-fit.md)).
 """
 
 if __name__ == "__main__":

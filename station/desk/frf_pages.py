@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.signal.frf.frf import FrfKind
 from jointbench.station.desk.desk_state import DeskState
@@ -19,6 +19,7 @@ UNITS = {
 }
 # Lines drawn of a curve: of two in each pixel of a wide screen.
 _MOST_LINES = 3000
+_HALF_TURN = 180.0
 Page = dict[str, Any]
 
 
@@ -50,13 +51,20 @@ def frf_page(state: DeskState, output: int, column: int) -> Page:
         "unit": UNITS[frf.kind],
         "frequency_hz": numbers(frf.frequency[lines]),
         "size": numbers(np.abs(response)),
-        "phase_deg": numbers(np.degrees(np.angle(response))),
+        "phase_deg": numbers(_phase(response)),
         "fitted": numbers(np.abs(fitted[lines])),
-        "fitted_phase_deg": numbers(np.degrees(np.angle(fitted[lines]))),
+        "fitted_phase_deg": numbers(_phase(fitted[lines])),
     }
     if frf.coherence is not None:
         page["coherence"] = numbers(frf.coherence[pair][lines])
     return page
+
+
+def _phase(response: ComplexArray) -> FloatArray:
+    """Return the phase [deg], with a gap wherever it wraps."""
+    phase = np.degrees(np.angle(response))
+    phase[np.flatnonzero(np.abs(np.diff(phase)) > _HALF_TURN)] = np.nan
+    return np.asarray(phase)
 
 
 def matrix_page(state: DeskState) -> Page:

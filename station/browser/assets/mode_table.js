@@ -5,7 +5,7 @@ import { el, fill } from "./dom.js";
 import { shown } from "./numbers.js";
 import { uncertain } from "./uncertain.js";
 
-const HEADS = ["words", "", "", "wide-only", "", ""];
+const HEADS = ["words", "", "", "wide-only", "wide-only", ""];
 
 /**
  * @param {import("./desk_frame.js").Desk} desk
@@ -56,7 +56,7 @@ export function modeTable(desk, chart) {
       stacked(one.frequency_hz, one.frequency_sd_hz),
       stacked(100 * one.damping_ratio, 100 * one.damping_ratio_sd),
       el("td", { class: "wide-only" }, shown(one.mpc, 3)),
-      el("td", {}, one.pinned ? "pinned" : one.by_hand ? "hand" : "program"),
+      el("td", { class: "wide-only" }, one.pinned ? "pinned" : one.by_hand ? "hand" : "program"),
       el("td", { class: "acts" },
         el("button", {
           type: "button", class: "small", "aria-label": `Show ${name} in the diagram`, title: "Show in the diagram",
