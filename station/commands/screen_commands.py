@@ -34,7 +34,7 @@ ScreenPort = Annotated[
     int,
     typer.Option(
         "--port",
-        metavar="NUMBER",
+        metavar="N",
         help="TCP port on this computer, for example 8765; any free port by default.",
     ),
 ]
@@ -60,7 +60,7 @@ def bench_command(
     geometry: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE",
+            metavar="PATH",
             help="Positions of the points, to be drawn (TOML, .uff or .unv).",
         ),
     ] = None,
