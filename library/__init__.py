@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from jointbench.station.library.archives import archive, process
     from jointbench.station.library.assemblies import reassembly
     from jointbench.station.library.contact_laws import contact
+    from jointbench.station.library.desks import desk
     from jointbench.station.library.example_files import example
     from jointbench.station.library.frf_results import frf
     from jointbench.station.library.gaps import gap
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "archive": ("archives", "archive"),
     "contact": ("contact_laws", "contact"),
+    "desk": ("desks", "desk"),
     "example": ("example_files", "example"),
     "frf": ("frf_results", "frf"),
     "gap": ("gaps", "gap"),
@@ -56,6 +58,7 @@ _PLACES = {
 __all__ = [
     "archive",
     "contact",
+    "desk",
     "example",
     "frf",
     "gap",

@@ -53,7 +53,7 @@ from jointbench.station.commands.reprocessing_commands import (
     process_command,
     reprocess_command,
 )
-from jointbench.station.commands.screen_commands import bench_command
+from jointbench.station.commands.screen_commands import bench_command, desk_command
 from jointbench.station.commands.shared_options.registered_names import (
     added_effects,
     command_with_names,
@@ -81,6 +81,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
     "Recorded data": {
         "import": import_command,
         "modal": modal_command,
+        "desk": desk_command,
         "surface": surface_command,
         "report": report_command,
         "process": process_command,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Identify the modes of a structure from its FRF."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -20,7 +20,13 @@ from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.kalman.process_models import StageGain
 from jointbench.signal.kalman.stage_provenance import stage_gain_of
-from jointbench.signal.modal.frf_lines import FrfLines, lines_of
+from jointbench.signal.modal.chosen_poles.frf_parts import (
+    force_noise_of,
+    missed_share,
+    scatter_of,
+    synthesis_of,
+)
+from jointbench.signal.modal.frf_lines import lines_of
 from jointbench.signal.modal.lscf import Progress, fit_poles
 from jointbench.signal.modal.manual_selection import Choices, overrule
 from jointbench.signal.modal.modal_model import ModalModel, build_model
@@ -28,7 +34,6 @@ from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
 from jointbench.signal.modal.repeated_roots import separate_repeated
 from jointbench.signal.modal.residual_search.doubtful_neighbours import neighbour_words
 from jointbench.signal.modal.response_harmonics import without_vague_harmonics
-from jointbench.signal.modal.shared_errors import ForceNoise
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,
@@ -144,14 +149,14 @@ def identify_modes(
     found = overrule(found, table, settings.choices)
     lines = lines_of(frf, keep)
     start = np.array([c.pole for c in found], complex)
-    scatter = _scatter(frf, keep)
+    scatter = scatter_of(frf, keep)
     fitted = fit_modes(
         lines,
         start,
         scatter,
         held=np.array([c.by_hand for c in found], bool),
         seen=None if settings.choices.drop else partial(recurs, table),
-        force=_force_noise(frf, keep),
+        force=force_noise_of(frf, keep),
         refine=settings.refine,
         progress=progress,
     )
@@ -170,8 +175,8 @@ def identify_modes(
     return ModalResult(
         model=model,
         stabilisation=table,
-        synthesis=_synthesis(frf, keep, fitted),
-        synthesis_error=_missed(lines, fitted),
+        synthesis=synthesis_of(frf, keep, fitted),
+        synthesis_error=missed_share(lines, fitted),
         settings=settings,
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
@@ -287,42 +292,3 @@ def _record(
         kept_by_hand=", ".join(f"{f:g} Hz" for f in choices.keep) or "none",
         dropped_by_hand=", ".join(f"{f:g} Hz" for f in choices.drop) or "none",
     )
-
-
-def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
-    """Return the variance of the kept lines, one row per pair, or None."""
-    if frf.variance is None:
-        return None
-    kept = frf.variance[:, :, keep]
-    return kept.reshape(-1, kept.shape[2])
-
-
-def _force_noise(frf: Frf, keep: BoolArray) -> ForceNoise:
-    """Return what the noise of the force changes in the FRFs of each input."""
-    if frf.force_noise is None or frf.force_width <= 0.0:
-        return ForceNoise(np.zeros((len(frf.inputs), np.count_nonzero(keep))), 0.0)
-    power = np.abs(frf.response[:, :, keep]) ** 2
-    share = frf.force_noise[:, :, keep] / np.where(power > 0.0, power, np.inf)
-    return ForceNoise(np.max(share, axis=0), frf.force_width)
-
-
-def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
-    """Return the FRF of the model on the kept lines."""
-    shape = (len(frf.outputs), len(frf.inputs), -1)
-    return replace(
-        frf,
-        frequency=frf.frequency[keep],
-        response=fitted.fit.synthesis.reshape(shape),
-        coherence=None,
-        innovation_noise=None,
-        force_noise=None,
-        variance=fitted.variance.reshape(shape),
-        provenance=(*frf.provenance, step("synthesis")),
-    )
-
-
-def _missed(lines: FrfLines, fitted: FittedModes) -> FloatArray:
-    """Return the rms of the residual over the rms of the FRF, line by line."""
-    missed = np.sum(np.abs(lines.response - fitted.fit.synthesis) ** 2, axis=0)
-    measured = np.sum(np.abs(lines.response) ** 2, axis=0)
-    return np.asarray(np.sqrt(missed / np.where(measured > 0.0, measured, 1.0)))

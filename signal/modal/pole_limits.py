@@ -26,12 +26,13 @@ class PolePrior:
     residual; only the start then distinguishes them. Its sd is taken as a half-power
     half-width, beyond which a pole counts as another one. Where the lines resolve a
     pole, this prior is negligible. The first `n_modes` are modes, the others
-    computational poles beyond the band.
+    computational poles beyond the band. Pinned ones stay at their start.
     """
 
     start: ComplexArray
     weight: FloatArray
     n_modes: int
+    pinned: BoolArray
 
     @classmethod
     def around(
@@ -47,13 +48,15 @@ class PolePrior:
             lines: lines of the fit.
             start: of the modes [rad/s], shape (n_modes,).
             beyond: start of the computational poles [rad/s].
-            doubt: factor on the weight of the modes.
+            doubt: factor on the weight of the modes; inf pins one.
         """
+        doubt = np.broadcast_to(doubt, start.shape)
+        pinned = np.append(np.isinf(doubt), np.zeros(beyond.size, bool))
         reach = _LEASH * measured_width(lines, start)
         reach = np.append(reach, np.full(beyond.size, np.ptp(lines.laplace.imag)))
         weight = (1.0 / reach) ** 2
-        weight[: start.size] *= doubt
-        return cls(np.append(start, beyond), weight, start.size)
+        weight[: start.size] *= np.where(np.isinf(doubt), 1.0, doubt)
+        return cls(np.append(start, beyond), weight, start.size, pinned)
 
     def cost(self, pole: ComplexArray) -> float:
         """Return the weighted squared distance from the start."""

@@ -134,7 +134,7 @@ def refine_poles(
         beyond: computational poles outside the band, free as long as they stay outside
             [rad/s], shape (n,), or None.
         doubt: inflation found in an earlier fit, shape (n_modes,): the weight of the
-            start grows with it; None for 1.
+            start grows with it; inf holds a pole at its start; None for 1.
         begin: start of the search from an earlier fit; None for `start`.
         steps: most evaluations; 0 keeps the start and only returns its covariance.
         rough: whether the poles may be a standard deviation from the optimum, because
@@ -182,7 +182,7 @@ def _search(
 
     `near` limits the last step and what it leaves, see `_is_last`.
     """
-    free, damping = np.ones(pole.size, bool), 1e-3
+    free, damping = ~prior.pinned, 1e-3
     here, settled = _evaluate(lines, pole, variance), False
     moved = np.full(pole.size, np.inf)
     for _ in range(steps):
@@ -341,8 +341,14 @@ def _stepped(
 
 
 def _joint_covariance(here: _Point, prior: PolePrior) -> FloatArray:
-    """Return the covariance of all (Re p, Im p), with the prior of the start."""
-    inverse = inverses(here.gram + np.diag(np.repeat(prior.weight, 2)))
+    """Return the covariance of all (Re p, Im p), with the prior of the start.
+
+    Pinned poles have none.
+    """
+    free = np.repeat(~prior.pinned, 2)
+    gram = here.gram + np.diag(np.repeat(prior.weight, 2))
+    held = np.outer(free, free)
+    inverse = np.where(held, inverses(np.where(held, gram, np.diag(~free))), 0.0)
     # Rounding can leave a variance of exact data below zero.
     np.fill_diagonal(inverse, np.maximum(np.diag(inverse), 0.0))
     return inverse

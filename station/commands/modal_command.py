@@ -8,12 +8,14 @@ from pathlib import Path
 from rich.text import Text
 
 from jointbench.acquisition.basics.errors import UnitError, UsageError
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.formats.frfs.frf_columns import TABLE_EXAMPLE
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.continuous_frf import estimate_continuous_frf
 from jointbench.signal.hits.plausibility import channel_words
+from jointbench.station.desk.desk_results import set_aside
 from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.input_files import is_session_name, read_recordings
 from jointbench.station.files.output_paths import check_outputs
@@ -167,6 +169,10 @@ def _give_out(
     """Write the files of a chain, show it, and return its JSON."""
     results, universal, json_target = targets
     if results is not None:
+        kept = set_aside(results)
+        if kept is not None:
+            name = visible(kept.name)
+            console(json_target).print(f"choices made at the desk are kept in {name}")
         write_results(results, chain, files)
     if universal is not None:
         write_universal(universal, chain.frf, chain.result.model)

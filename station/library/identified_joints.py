@@ -12,6 +12,7 @@ from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
 )
 from jointbench.signal.modal.modes import ModalSettings
+from jointbench.station.desk.desk_results import chosen_at_desk
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.joints.model_kind import describes_structure
@@ -132,11 +133,12 @@ def identify(
     if not sessions:
         raise UsageError(f"'{path}' is a lumped bench and needs sessions, hits or FRFs")
     settings = ChainSettings(modal=ModalSettings(band=band))
-    chain = (
-        run_chain(source.recordings, settings)
-        if isinstance(source, Measurement)
-        else modes_of_files(sessions, options, settings)
-    )
+    if isinstance(source, Measurement):
+        chain = run_chain(source.recordings, settings)
+    else:
+        # A band asks for other modes than those on the desk.
+        chosen = None if band else chosen_at_desk(sessions)
+        chain = chosen or modes_of_files(sessions, options, settings)
     return IdentifiedJoints(
         identify_joint(read_toml(path, BenchModel), chain.result.model)
     )

@@ -175,6 +175,8 @@ def modal_chain(
     settings: ChainSettings,
     run: StageRun,
     preload: float | None = None,
+    *,
+    over_amplitude: bool = True,
 ) -> ModalChain:
     """Run the stages that follow the hits.
 
@@ -187,6 +189,7 @@ def modal_chain(
         settings: of the chain.
         run: store and source.
         preload: of these recordings [N], part of the names of the stages.
+        over_amplitude: whether the modes are resolved over their amplitude.
 
     Returns:
         The chain, its recordings with lost samples filled.
@@ -199,8 +202,8 @@ def modal_chain(
     result = _modes_stage(measured.frf, settings, run, at)
     result = _without_harmonics(result, measured)
     filled = _fill_stage(judged, result, settings, run, at)
-    whole = _chain_of(judged, measured, result)
-    return _amplitude_stage(filled[0] if filled else whole, run, at)
+    whole = filled[0] if filled else _chain_of(judged, measured, result)
+    return _amplitude_stage(whole, run, at) if over_amplitude else whole
 
 
 def _without_harmonics(result: ModalResult, measured: MeasuredFrf) -> ModalResult:

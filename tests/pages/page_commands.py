@@ -26,6 +26,7 @@ OF_COMMANDS = {
     "bench": "needs hardware",
     "demo": "takes minutes",
     "design": "takes minutes",
+    "desk": "runs until Ctrl-C",
     "doctor": "needs hardware",
     "export-joint": "takes minutes",
     "measure": "needs hardware",

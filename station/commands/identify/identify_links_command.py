@@ -5,12 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.identified import (
     Identification,
     identification_json,
 )
 from jointbench.signal.modal.modes import ModalSettings
+from jointbench.station.desk.desk_results import chosen_at_desk
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.model_kind import describes_structure
@@ -18,6 +20,7 @@ from jointbench.station.joints.modes_of_files import modes_of_files
 from jointbench.station.pipeline.chain import ChainSettings
 from jointbench.station.pipeline.link_stage import fits, identify_joint
 from jointbench.station.pipeline.modal_options import parse_band
+from jointbench.station.results.results_file import results_path
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
 from jointbench.station.screen.terminal import console, table, working, write_json
@@ -44,8 +47,15 @@ def run_identify(
     settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
     bench = read_toml(model, BenchModel)
     with working("fitting modes, identifying links"):
-        modes = modes_of_files(sessions, options or FrfOptions(), settings)
+        # A band asks for other modes than those on the desk.
+        modes = None if band else chosen_at_desk(sessions)
+        chosen = modes is not None
+        if modes is None:
+            modes = modes_of_files(sessions, options or FrfOptions(), settings)
         result = identify_joint(bench, modes.result.model)
+    if chosen:
+        name = visible(results_path(sessions[0]).name)
+        console(json_target).print(f"modes as chosen at the desk: {name}")
     show_joint(result, json_target)
     write_json(json_target, identification_json(result))
     return result

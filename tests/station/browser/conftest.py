@@ -2,8 +2,8 @@
 
 import shutil
 import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -50,6 +50,12 @@ def served(parts: Sequence[ScreenPart]) -> Iterator[Screen]:
         finally:
             server.should_exit = True
             thread.join()
+
+
+@pytest.fixture
+def serve() -> Callable[[Sequence[ScreenPart]], AbstractContextManager[Screen]]:
+    """Return what serves parts of a screen as long as a context lasts."""
+    return served
 
 
 @pytest.fixture(scope="session")
