@@ -12,7 +12,7 @@ import tokenize
 import zipfile
 import zlib
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,18 +84,29 @@ def read_numpy_archive(path: Path) -> dict[str, NDArray[Any]]:
         ) from error
 
 
+def read_array_header(file: BinaryIO) -> tuple[tuple[int, ...], np.dtype[Any]]:
+    """Return shape and type of the array of a .npy file; leaves it at the values.
+
+    Raises:
+        ValueError: it is no such file, or its header is damaged; as well as what
+            Python raises for a header that is no literal.
+    """
+    version = np.lib.format.read_magic(file)
+    read = (
+        np.lib.format.read_array_header_1_0
+        if version == (1, 0)
+        else np.lib.format.read_array_header_2_0
+    )
+    shape, _, kind = read(file)
+    return shape, kind
+
+
 def _parsed(path: Path, name: str, data: bytes) -> NDArray[Any]:
     """Return the array of the bytes of a .npy file, its header compared with them."""
     where = named(path) if name == path.name else f"{named(path)}: {shown(name)}"
     file = io.BytesIO(data)
     try:
-        version = np.lib.format.read_magic(file)
-        read = (
-            np.lib.format.read_array_header_1_0
-            if version == (1, 0)
-            else np.lib.format.read_array_header_2_0
-        )
-        shape, _, kind = read(file)
+        shape, kind = read_array_header(file)
         held = len(data) - file.tell()
         if kind.hasobject:
             raise FormatError(

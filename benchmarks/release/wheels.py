@@ -21,8 +21,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SYSTEMS = {
-    "Linux x86-64": ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64"),
-    "Linux arm64": ("manylinux_2_28_aarch64", "manylinux_2_17_aarch64"),
+    "Linux x86-64": tuple(f"manylinux_2_{n}_x86_64" for n in (28, 27, 24, 17)),
+    "Linux arm64": tuple(f"manylinux_2_{n}_aarch64" for n in (28, 27, 24, 17)),
     "macOS arm64": ("macosx_14_0_arm64", "macosx_12_0_arm64", "macosx_11_0_arm64"),
     "Windows x86-64": ("win_amd64",),
 }
@@ -48,7 +48,8 @@ def resolve(tags: tuple[str, ...], python: str, wanted: list[str]) -> tuple[int,
         )
         if done.returncode:
             lines = [x for x in done.stderr.split("\n") if x.startswith("ERROR")]
-            return 0, lines[-1].removeprefix("ERROR: ") if lines else "pip failed"
+            words = lines[-1].removeprefix("ERROR: ") if lines else "pip failed"
+            return 0, "none that fit" if "ResolutionImpossible" in words else words
         found = json.loads(report.read_text())["install"]
     names = [one["download_info"]["url"].rsplit("/", 1)[-1] for one in found]
     assert all(name.endswith(".whl") for name in names)

@@ -12,6 +12,7 @@ from jointbench.acquisition.formats.columns import SKIP, parse_columns
 from jointbench.acquisition.formats.numpy_archives import (
     NPY_MAGIC,
     is_numpy_archive,
+    read_array_header,
     read_numpy_archive,
     read_numpy_array,
 )
@@ -83,13 +84,7 @@ def recognise_numpy_recordings(path: Path) -> bool:
         if path.suffix.lower() != ".npy" or not read_head(path, 6) == NPY_MAGIC:
             return False
         with path.open("rb") as file:
-            version = np.lib.format.read_magic(file)
-            read = (
-                np.lib.format.read_array_header_1_0
-                if version == (1, 0)
-                else np.lib.format.read_array_header_2_0
-            )
-            shape, _, kind = read(file)
+            shape, kind = read_array_header(file)
             return len(shape) == _CUBE and kind.kind in "fiu"
     except (BadData, OSError, ValueError, SyntaxError, TypeError, EOFError):
         return False  # the reader of tables reports the fault
