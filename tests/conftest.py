@@ -1,4 +1,4 @@
-"""One BLAS thread, few searches for garbage, and limits of a test in CPU time.
+"""One BLAS thread, shared bytecode, few searches for garbage, limits in CPU time.
 
 Limits in CPU time hold on a busy machine as well.
 """
@@ -6,7 +6,9 @@ Limits in CPU time hold on a busy machine as well.
 import gc
 import os
 import signal
+import sys
 from collections.abc import Generator
+from pathlib import Path
 from types import FrameType
 
 import pytest
@@ -16,6 +18,15 @@ import pytest
 # two threads asks for two.
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+
+# Tests start a hundred interpreters, and where the environment forbids bytecode beside
+# the sources each of them would compile a thousand modules again, 1.6 s of CPU time
+# (docs/decisions/0326). They share bytecode beside pytest's own cache instead.
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
+    _bytecode = Path(__file__).parents[1] / ".pytest_cache" / "bytecode"
+    os.environ.setdefault("PYTHONPYCACHEPREFIX", str(_bytecode))
+    sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"]
+    sys.dont_write_bytecode = False
 
 CPU_LIMIT = 120.0
 """CPU time of this process, all threads, after which a test is stopped [s]."""
