@@ -167,10 +167,11 @@ class LumpedModel:
         Raises:
             UsageError: there is no such body.
         """
+        for degree, one in enumerate(self.bodies):
+            if one.name == body:
+                return degree
         names = [one.name for one in self.bodies]
-        if body not in names:
-            raise UsageError(f"no body {body!r} in the model; its bodies are {names}")
-        return names.index(body)
+        raise UsageError(f"no body {body!r} in the model; its bodies are {names}")
 
     def ends(self, link: int) -> tuple[int, int]:
         """Return the degrees of freedom at a link's negative and positive end.

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 import scipy.linalg
-import scipy.signal
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import BadData
@@ -82,7 +81,9 @@ def correlate_responses(
     responses = recording.samples[list(response_rows(recording))]
     step = max(1, int(recording.sample_rate / (_SAMPLES_PER_PERIOD * highest)))
     if step > 1:
-        responses = scipy.signal.decimate(responses, step, ftype="fir", axis=1)
+        from scipy.signal import decimate  # slow to import
+
+        responses = decimate(responses, step, ftype="fir", axis=1)
     responses = responses - responses.mean(axis=1, keepdims=True)
     rate = recording.sample_rate / step
     length = (responses.shape[1] - n_lags) // n_blocks

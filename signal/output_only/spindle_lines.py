@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.fft
 from scipy.ndimage import maximum_filter1d, median_filter
-from scipy.signal.windows import hann
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.records.provenance import step
@@ -124,7 +123,7 @@ def _whitened(responses: FloatArray) -> FloatArray:
     """Return power over the median of the lines around, mean over responses."""
     count = responses.shape[1]
     total = np.zeros(count // 2 + 1)
-    window = hann(count, sym=False)
+    window = _hann(count)
     for row in responses:
         power = np.abs(scipy.fft.rfft((row - row.mean()) * window)) ** 2
         level = median_filter(power, _AROUND, mode="nearest")
@@ -145,7 +144,7 @@ def _taken_out(responses: FloatArray, line: float) -> tuple[float, float] | None
     """
     count = responses.shape[1]
     time = np.arange(count) - 0.5 * (count - 1)
-    window = hann(count, sym=False)
+    window = _hann(count)
     window /= window.sum()
 
     def amplitudes(turn: float) -> FloatArray:
@@ -176,3 +175,9 @@ def _taken_out(responses: FloatArray, line: float) -> tuple[float, float] | None
         responses += sines
         return None
     return turn, float(2.0 * np.abs(size).max())
+
+
+def _hann(count: int) -> FloatArray:
+    """Return the periodic Hann window, as `scipy.signal`, which is slow to import."""
+    turn = np.linspace(-np.pi, np.pi, count + 1)[:-1]
+    return np.asarray(0.5 + 0.5 * np.cos(turn))

@@ -4,7 +4,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.intake.intake_settings import HITS
@@ -109,7 +108,9 @@ def bad_hit(hit: QuietHit, volts: FloatArray, full_scale: float, aimed: float) -
 
 def _contacts(force: FloatArray, limit: float) -> int:
     """Count the contacts of the hammer: peaks with an opening between them."""
-    peaks, _ = scipy.signal.find_peaks(
+    from scipy.signal import find_peaks  # slow to import
+
+    peaks, _ = find_peaks(
         force, height=limit, prominence=limit, distance=HITS.contact_padding
     )
     return max(len(peaks), 1)
@@ -141,7 +142,9 @@ def make_filter(band: float, sample_rate: float) -> CommonFilter:
         return CommonFilter(np.ones(1), 1)
     half_rate = sample_rate / step / 2
     width = (half_rate - band) / (sample_rate / 2)
-    taps, beta = scipy.signal.kaiserord(HITS.stop_band, width)
+    from scipy.signal import firwin, kaiserord  # slow to import
+
+    taps, beta = kaiserord(HITS.stop_band, width)
     cut = 0.5 * (band + half_rate)
-    kernel = scipy.signal.firwin(taps | 1, cut, window=("kaiser", beta), fs=sample_rate)
+    kernel = firwin(taps | 1, cut, window=("kaiser", beta), fs=sample_rate)
     return CommonFilter(np.asarray(kernel), step)

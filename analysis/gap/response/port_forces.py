@@ -75,6 +75,8 @@ class PortModes:
 
 def _scaled(rows: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Return the largest entry over the ports, and the rows over it."""
+    if rows.shape[1] == 1:  # the usual case, without a search over ports
+        return rows[:, 0].copy(), np.ones_like(rows)
     at = np.argmax(np.abs(rows), axis=1)[:, None]
     largest = np.take_along_axis(rows, at, axis=1)
     over = np.divide(rows, largest, out=np.zeros_like(rows), where=largest != 0)

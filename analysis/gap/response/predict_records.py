@@ -110,7 +110,7 @@ def _measured_motion(
 ) -> FloatArray:
     """Return what the channels show of the displacements of the bodies."""
     s = excitation.s
-    power = s ** int(model.output)
+    power = _derivative(excitation, int(model.output))
     seen = [model.index(c.body) for c in model.channels]
     spectra = np.empty((len(x[0]), len(seen), s.size), dtype=np.complex128)
     for i, body in enumerate(seen):
@@ -121,6 +121,14 @@ def _measured_motion(
         if action.entry.shape is not None:
             response = _shaped(response, measured, action, excitation.sample_rate)
     return response
+
+
+@lru_cache(maxsize=8)
+def _derivative(excitation: Excitation, order: int) -> ComplexArray:
+    """Return s^order, shape (n_lines,), read-only."""
+    values = excitation.s**order
+    values.flags.writeable = False
+    return np.asarray(values)
 
 
 def motion(

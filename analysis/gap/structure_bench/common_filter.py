@@ -4,7 +4,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 
@@ -38,6 +37,8 @@ class CommonFilter:
             start: first raw sample that is kept.
         """
         taps = self.kernel.reshape((1,) * (values.ndim - 1) + (-1,))
-        full = scipy.signal.oaconvolve(values, taps, axes=-1)
+        from scipy.signal import oaconvolve  # slow to import
+
+        full = oaconvolve(values, taps, axes=-1)
         inside = full[..., self.half : self.half + values.shape[-1]]
         return np.asarray(inside[..., start :: self.step])

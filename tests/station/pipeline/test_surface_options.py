@@ -62,18 +62,33 @@ def files(tmp_path_factory):
     return folder
 
 
+@pytest.fixture(scope="module")
+def run_before():
+    """What `surface` wrote by its words: JSON and screen, kept for the whole module."""
+    return {}
+
+
 @pytest.fixture
-def surface(files, monkeypatch, capsys, tmp_path):
-    """Run `surface` on files by name; return what it wrote as JSON, and the screen."""
+def surface(files, run_before, monkeypatch, capsys, tmp_path):
+    """Run `surface` on files by name; return what it wrote as JSON, and the screen.
+
+    The same words are run once; several tests compare with a plain run.
+    """
 
     def run(*words):
+        if words not in run_before:
+            run_before[words] = fresh(*words)
+        written, shown = run_before[words]
+        return json.loads(written), shown
+
+    def fresh(*words):
         monkeypatch.setenv("COLUMNS", "250")
         target = tmp_path / "found.json"
         given = [files / word if str(word).endswith(".csv") else word for word in words]
         line = ["jointbench", "surface", *map(str, given), "--json", str(target)]
         monkeypatch.setattr("sys.argv", line)
         assert exit_code(app, debug=False) == 0
-        return json.loads(target.read_text(encoding="utf-8")), capsys.readouterr().out
+        return target.read_text(encoding="utf-8"), capsys.readouterr().out
 
     return run
 
