@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import ComplexArray
+from jointbench.signal.modal import rank_one_fit
 from jointbench.signal.modal.rank_one_fit import PeakLines, fit_rank_one
 
 POLES: ComplexArray = np.array([-3.0 + 625.0j, -4.0 + 630.0j])
@@ -44,3 +45,17 @@ def test_two_modes_at_one_peak_come_out_at_the_noise(peak: PeakLines) -> None:
     found = fit_rank_one(peak, POLES + np.array([2.0j, -2.0j]), REFERENCES)
     assert found.cost / (2.0 * peak.response.size) == pytest.approx(1.0, abs=0.1)
     assert found.pole == pytest.approx(POLES, abs=0.1)
+
+
+def test_sums_over_parts_of_the_rows_end_at_the_same_optimum(
+    peak: PeakLines, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Limits as of a large measurement: two rows at a time, no matrix of slopes."""
+    start = POLES + np.array([2.0j, -2.0j])
+    whole = fit_rank_one(peak, start, REFERENCES)
+    monkeypatch.setattr(rank_one_fit, "_MOST_VALUES", 0)
+    monkeypatch.setattr(rank_one_fit, "_PART_VALUES", 2 * 2 * 3 * 60 * 12)
+    found = fit_rank_one(peak, start, REFERENCES)
+    assert found.cost == pytest.approx(whole.cost, rel=1e-6)
+    assert found.pole == pytest.approx(whole.pole, abs=1e-3)
+    assert found.shape == pytest.approx(whole.shape, rel=1e-3, abs=1e-6)
