@@ -137,7 +137,7 @@ def desk_command(
     from jointbench.acquisition.formats.samples.sample_format import SampleOptions
     from jointbench.station.browser.desk.run_desk import DeskScreen, run_desk
     from jointbench.station.desk.desk_subject import DeskRequest
-    from jointbench.station.files.input_files import parse_rate
+    from jointbench.station.files.typed_values import parse_rate
     from jointbench.station.pipeline.modal_options import modal_settings
 
     request = DeskRequest(
