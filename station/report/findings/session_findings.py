@@ -45,9 +45,9 @@ def _modes(preloads: Sequence[PreloadAnalysis]) -> list[str]:
         every = [one.preload for one in preloads if one.preload is not None]
         counts = [one.modal.result.model.natural_frequency.size for one in preloads]
         span = f" from {min(every):g} to {max(every):g} N" if every else ""
+        many = " to ".join(str(n) for n in sorted({min(counts), max(counts)}))
         return [
-            f"Modes were identified at {len(preloads)} preloads{span}: "
-            f"{min(counts)} to {max(counts)} modes at each."
+            f"Modes were identified at {len(preloads)} preloads{span}: {many} at each."
         ]
     low, high = first.result.band
     if not frequency.size:
