@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from jointbench.acquisition.basics.errors import InstrumentError, JointbenchError
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.ni.stream import StreamGap
 from jointbench.acquisition.recorder import replies
 from jointbench.acquisition.recorder.news import NewsBox
@@ -52,6 +53,7 @@ def run_recorder(link: Connection, setup: Setup) -> None:
     for name in ("SIGINT", "SIGHUP", "SIGBREAK"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
+    keep_memory_steady()
     with suppress(_Ended):
         Recorder(link, setup).run()
 

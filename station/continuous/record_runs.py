@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import JointbenchError, UsageError
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
 from jointbench.acquisition.ni.sensor_calibration import (
@@ -97,6 +98,7 @@ def run_record_plan(
         )
     check_session_name(out)
     check_outputs([plan_file, out], [json_target])
+    keep_memory_steady()
     screen, record = lasting_console(json_target), RunsRecord()
     with session_place(out, overwrite=overwrite) as place:
         with open_chassis(url) as opened, viewing(screen, place.own) as view:

@@ -16,6 +16,7 @@ from jointbench.acquisition.basics.errors import (
     JointbenchError,
     UsageError,
 )
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
 from jointbench.acquisition.ni.sensor_calibration import (
@@ -116,6 +117,7 @@ def run_measure(
         )
     check_session_name(out)
     check_outputs([plan_file, out], [json_target])
+    keep_memory_steady()
     screen = lasting_console(json_target)
     with session_place(out, overwrite=overwrite) as place:
         with _naming_file(place, screen), open_chassis(url) as opened:
