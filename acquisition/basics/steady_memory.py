@@ -13,9 +13,9 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD, _ARENA_MAX = -1, -3, -8
 def keep_memory_steady() -> bool:
     """Let large blocks of memory go back to the system as soon as they are freed.
 
-    The C library of Linux keeps freed blocks of up to 32 MB for later. Reads of changing
-    size then leave holes between what stays, and a recording grows by megabytes a
-    minute for as long as the computer is busy.
+    The C library of Linux keeps freed blocks of up to 32 MB for later. Reads of
+    changing size then leave holes between what stays, and a recording grows by
+    megabytes a minute for as long as the computer is busy.
 
     Returns:
         Whether the C library was told; others than glibc need not be.

@@ -6,7 +6,6 @@ them has refreshed a dataset, a second one finds wrong chunks in it, or none at 
 (h5py issue 2803): samples that are in the file read as damaged.
 """
 
-import os
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
@@ -21,7 +20,7 @@ def follow_file(path: Path) -> tuple[int, int]:
     Raises:
         OSError: it is not there.
     """
-    status = os.stat(path)
+    status = path.stat()
     key = status.st_dev, status.st_ino
     _followed.add(key)
     return key

@@ -88,7 +88,7 @@ def record_command(
         jointbench record 'sim:bolted-plates?seed=3&hide=loose_bolt' --out hits.h5
     """
     os.environ.setdefault("GRPC_VERBOSITY", "NONE")
-    if source.lower().endswith(".toml"):
+    if source.lower().endswith(".toml") and not Path(source).is_dir():
         from jointbench.station.continuous.record_runs import run_record_plan
 
         whole = run_record_plan(
@@ -96,14 +96,14 @@ def record_command(
         )
         return 0 if whole else EXIT_QUALITY
     from jointbench.simulators.flexible.flexible_url import is_flexible_url
+    from jointbench.station.commands.record_command import require_bench, run_record
 
+    require_bench(source)
     if is_flexible_url(source):
         from jointbench.station.sources.record_flexible import run_record_flexible
 
         run_record_flexible(source, out, overwrite=force, json_target=json)
         return 0
-    from jointbench.station.commands.record_command import run_record
-
     written = run_record(source, out, overwrite=force, json_target=json)
     return 0 if written.whole else EXIT_QUALITY
 
