@@ -136,6 +136,37 @@ def watch_command(
     run_watch(session, once=once, json_target=json)
 
 
+def tell_command(
+    session: Annotated[
+        Path, typer.Argument(metavar="SESSION", help="Session that is being recorded.")
+    ],
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="COMMAND",
+            help="'pause', 'continue', 'reject 17', 'go 4', 'note TEXT', 'quit yes'; "
+            "all are in docs/bench-screen.md.",
+        ),
+    ],
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Tell a session that is being recorded what to do.
+
+    The command goes to the 'measure' or 'record' that writes the session, as if it
+    was typed there; its answer is printed. 'watch --once' prints the state.
+
+    Examples:
+        jointbench tell session.h5 pause
+        jointbench tell session.h5 note bolt 2 rubs
+        jointbench tell session.h5 quit yes
+    """
+    from jointbench.station.bench_view.tell_session import run_tell
+
+    done = run_tell(session, " ".join(words), json_target=json)
+    return 0 if done else EXIT_QUALITY
+
+
 def doctor_command(
     plan: Annotated[
         Path | None,

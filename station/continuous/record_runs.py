@@ -40,6 +40,7 @@ from jointbench.station.measure.session_log import gap_words
 from jointbench.station.measure.teds_checks import teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.session_events.command_mailbox import CommandMailbox
 from jointbench.station.session_events.flow_events import ConditionDone, RunBegun
 from jointbench.station.session_events.view_events import SessionBegun
 
@@ -165,7 +166,7 @@ def _record(
     record: RunsRecord,
 ) -> None:
     recorder, view, warnings = running
-    desk = SessionDesk(recorder, view)
+    desk = SessionDesk(recorder, view, mailbox=CommandMailbox(out))
     recorder.begin(out, _meta(plan, opened, recorder.sample_rate))
     desk.write(
         SessionBegun(

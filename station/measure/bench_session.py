@@ -53,6 +53,7 @@ from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.session_events.command_mailbox import CommandMailbox
 from jointbench.station.session_events.command_queue import CommandQueue
 from jointbench.station.sources.serial_port import line_name
 
@@ -171,7 +172,12 @@ def measure(
             with RecorderProcess(
                 _setup(plan, opened), given_up=lambda: record.interrupted
             ) as recorder:
-                desk = SessionDesk(recorder, view, commands or CommandQueue())
+                desk = SessionDesk(
+                    recorder,
+                    view,
+                    commands or CommandQueue(),
+                    mailbox=CommandMailbox(out),
+                )
                 _record(plan, opened, out, (desk, warnings, record))
         except BaseException:
             # What went wrong first is what the operator has to know.
