@@ -296,8 +296,9 @@ def page(rows: list[Row]) -> str:
     lines += [
         "",
         "Where the program alone dies, the recording process finishes the file; where "
-        "the recording process dies, the program does. Where both die, the recording "
-        "stays as it was written; every command opens it, and `recover` finishes it.",
+        "the recording process dies, the program does. Where both die, or the program "
+        "while it finishes the file itself, the recording stays as it was written; "
+        "every command opens it, and `recover` finishes it.",
         "",
     ]
     return "\n".join(lines)
