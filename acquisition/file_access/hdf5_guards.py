@@ -16,6 +16,7 @@ import h5py
 from h5py import h5a, h5d, h5g, h5o, h5t, h5z
 
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
+from jointbench.acquisition.file_access.followed_files import require_not_followed
 from jointbench.acquisition.file_access.memory_room import VARIABLE, room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
@@ -122,8 +123,10 @@ def open_guarded(
         FormatError: it is empty, truncated or no HDF5.
         HostileFile: it refers to other files or exceeds the limits; the message names
             the object and the rule.
+        UsageError: it is a recording that this process follows.
     """
     path = Path(path)
+    require_not_followed(path)
     limits = limits or FileLimits()
     _require_signature(path, _USER_BLOCK if limits.matlab else 0)
     try:

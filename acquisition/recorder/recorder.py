@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from jointbench.acquisition.basics.errors import InstrumentError, JointbenchError
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.ni.stream import StreamGap
 from jointbench.acquisition.recorder import replies
 from jointbench.acquisition.recorder.news import NewsBox
@@ -52,6 +53,7 @@ def run_recorder(link: Connection, setup: Setup) -> None:
     for name in ("SIGINT", "SIGHUP", "SIGBREAK"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
+    keep_memory_steady()
     with suppress(_Ended):
         Recorder(link, setup).run()
 
@@ -178,6 +180,7 @@ class Recorder:
             stream.resume()
             self._paused = False
             return replies.Done()
+        self._take_rest()
         if isinstance(request, ChangeSetup):
             self._note(stream.change(request.setup))
             self._paused = False
@@ -211,7 +214,8 @@ class Recorder:
     def _end(self) -> None:
         """Store the rest, close the account and the file; finish it in a dead end."""
         failure: Exception | None = None
-        self._take_rest()
+        with suppress(_Ended):
+            self._take_rest()
         self._note(self._stream.settle())
         try:
             self._close_file(interrupted=self._stop is None or self._stop.interrupted)
@@ -226,13 +230,18 @@ class Recorder:
                 finish_live(self._file.path, self._file.path, overwrite=True)
 
     def _take_rest(self) -> None:
-        """Store what the device had made when the end was requested."""
+        """Store what the device had made when the end, or a pause, was requested.
+
+        A request is served between two blocks of one read, which may hold seconds.
+
+        Raises:
+            _Ended: see `_record`.
+        """
         until = time.monotonic() + _REST
-        with suppress(_Ended):
-            while not self._must_wait() and self._stream.lags():
-                if time.monotonic() > until:
-                    return
-                self._take()
+        while not self._must_wait() and self._stream.lags():
+            if time.monotonic() > until:
+                return
+            self._take()
 
     def _close_file(self, *, interrupted: bool) -> None:
         live = self._stream.live

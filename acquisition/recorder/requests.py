@@ -62,7 +62,8 @@ class Ask(Enum):
     NEXT = "next"
     """Reply with `News` as soon as there are any."""
     PAUSE = "pause"
-    """Stop the stream on purpose; the reply is the number of samples stored."""
+    """Store what the device has made by now and stop the stream on purpose; the reply
+    is the number of samples stored."""
     RESUME = "resume"
     """Start the paused stream as soon as the device is available."""
     OPEN_LOOPS = "open loops"

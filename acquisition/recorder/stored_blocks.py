@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.basics.errors import InstrumentError
+from jointbench.acquisition.file_access.followed_files import follow_file, leave_file
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.ni.stream_records import Block
 from jointbench.acquisition.session_file.follow_log import LOG, LogTail
@@ -18,9 +19,8 @@ from jointbench.acquisition.session_file.live_read import LiveSpan
 class StoredBlocks:
     """Read stored samples block by block; close it after use.
 
-    No one else may have the file open in this process: HDF5 shares what it knows of a
-    dataset between all its handles, and after a refresh of one the others read wrong
-    chunks (h5py issue 2803).
+    Meanwhile the file cannot be opened for anything else in this process; see
+    `followed_files`.
     """
 
     def __init__(self, path: Path, block: int) -> None:
@@ -35,6 +35,7 @@ class StoredBlocks:
         """
         self._path, self._block = path, block
         try:
+            self._key = follow_file(path)
             self._file = h5py.File(path, "r", libver="latest", swmr=True)
         except OSError as error:
             raise InstrumentError(
@@ -68,6 +69,7 @@ class StoredBlocks:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+        leave_file(self._key)
 
     def _values(self, part: LiveSpan) -> np.ndarray:
         try:

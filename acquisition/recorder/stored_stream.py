@@ -114,6 +114,7 @@ class StoredStream:
 
     def pause(self) -> StreamGap | None:
         """Stop the stream on purpose; see `NiStream.pause`."""
+        self._until = None
         return self._logged(self._stream.pause())
 
     def resume(self) -> None:
@@ -126,6 +127,7 @@ class StoredStream:
 
     def trigger_by(self, trigger: HardwareTrigger) -> StreamGap | None:
         """Let the device detect hits; see `NiStream.trigger_by`."""
+        self._until = None
         return self._logged(self._stream.trigger_by(trigger))
 
     def open_loops(self) -> tuple[str, ...]:

@@ -19,7 +19,11 @@ from jointbench.station.bench_view.screen_parts import (
     progress_line,
 )
 from jointbench.station.bench_view.screen_plots import plot_lines
-from jointbench.station.bench_view.task_lines import task_lines, verdict_lines
+from jointbench.station.bench_view.task_lines import (
+    gain_lines,
+    task_lines,
+    verdict_lines,
+)
 from jointbench.station.session_events.session_state import SessionState
 
 _LEAST_PLOT = 3  # rows of an FRF below which it is left out
@@ -86,6 +90,7 @@ def _above(state: SessionState, around: ViewContext, look: Look) -> Iterator[Tex
     yield head_line(state, around.file, around.free, look.width)
     yield from task_lines(state, width=look.width, tall=tall)
     yield from verdict_lines(state, width=look.width, tall=tall)
+    yield from gain_lines(state, width=look.width)
     yield progress_line(state, around.now)
     yield from point_lines(state, width=look.width, rows=6 if tall else 2)
     yield from level_lines(

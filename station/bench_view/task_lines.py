@@ -52,6 +52,35 @@ def verdict_lines(state: SessionState, *, width: int, tall: bool) -> Iterator[Te
     yield Text(visible(f"{hit.peak_force:.4g} N at {hit.point}; {hit.reason}"))
 
 
+def gain_lines(state: SessionState, *, width: int) -> Iterator[Text]:
+    """Yield what further hits would buy, in one line; the worst resonances come first.
+
+    Only resonances that fit the width whole are named, one at least.
+    """
+    gain = state.gains[-1] if state.gains else None
+    average = state.average
+    if gain is None or not gain.peaks or average is None or gain.hit != average.hit:
+        return
+    peaks = sorted(gain.peaks, key=lambda peak: -peak["damping_sd"])
+    words = [_gain(peak) for peak in peaks]
+    line = f"{gain.more} more hits: {words[0]}"
+    for more in words[1:]:
+        if len(line) + len(more) + 2 > width:
+            break
+        line += f"; {more}"
+    yield Text(line)
+
+
+def _gain(peak: dict[str, float]) -> str:
+    """Return a resonance with its scatter now and after further hits."""
+    damping, after = 100 * peak["damping_sd"], 100 * peak["damping_sd_after"]
+    return (
+        f"{peak['frequency']:.1f} Hz ±{peak['frequency_sd']:.2g} to "
+        f"±{peak['frequency_sd_after']:.2g} Hz, damping ±{damping:.2g} to "
+        f"±{after:.2g} %"
+    )
+
+
 def _task(state: SessionState) -> tuple[str, str, str]:
     """Return the task in block letters and in words, and its style."""
     if state.ended is not None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from jointbench.acquisition.basics.errors import BadData, FormatError
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.session_file.follow_log import read_last, read_log
 from jointbench.station.bench_view.level_meter import WINDOW
@@ -48,6 +49,7 @@ def run_watch(
         BadData: it cannot be read, or holds no events.
     """
     check_outputs([session], [json_target])
+    keep_memory_steady()
     screen = console(json_target)
     events, live = _events(session)
     state = state_after(SessionState(), events)

@@ -88,7 +88,7 @@ def record_command(
         jointbench record 'sim:bolted-plates?seed=3&hide=loose_bolt' --out hits.h5
     """
     os.environ.setdefault("GRPC_VERBOSITY", "NONE")
-    if source.lower().endswith(".toml"):
+    if source.lower().endswith(".toml") and not Path(source).is_dir():
         from jointbench.station.continuous.record_runs import run_record_plan
 
         whole = run_record_plan(
@@ -96,14 +96,14 @@ def record_command(
         )
         return 0 if whole else EXIT_QUALITY
     from jointbench.simulators.flexible.flexible_url import is_flexible_url
+    from jointbench.station.commands.record_command import require_bench, run_record
 
+    require_bench(source)
     if is_flexible_url(source):
         from jointbench.station.sources.record_flexible import run_record_flexible
 
         run_record_flexible(source, out, overwrite=force, json_target=json)
         return 0
-    from jointbench.station.commands.record_command import run_record
-
     written = run_record(source, out, overwrite=force, json_target=json)
     return 0 if written.whole else EXIT_QUALITY
 
@@ -134,6 +134,37 @@ def watch_command(
     from jointbench.station.bench_view.watch_session import run_watch
 
     run_watch(session, once=once, json_target=json)
+
+
+def tell_command(
+    session: Annotated[
+        Path, typer.Argument(metavar="SESSION", help="Session that is being recorded.")
+    ],
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="COMMAND",
+            help="'pause', 'continue', 'reject 17', 'go 4', 'note TEXT', 'quit yes'; "
+            "all are in docs/bench-screen.md.",
+        ),
+    ],
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Tell a session that is being recorded what to do.
+
+    The command goes to the 'measure' or 'record' that writes the session, as if it
+    was typed there; its answer is printed. 'watch --once' prints the state.
+
+    Examples:
+        jointbench tell session.h5 pause
+        jointbench tell session.h5 note bolt 2 rubs
+        jointbench tell session.h5 quit yes
+    """
+    from jointbench.station.bench_view.tell_session import run_tell
+
+    done = run_tell(session, " ".join(words), json_target=json)
+    return 0 if done else EXIT_QUALITY
 
 
 def doctor_command(

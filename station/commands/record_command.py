@@ -3,6 +3,8 @@
 
 from pathlib import Path
 
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.records.recordings import Verdict
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.session_place import check_session_name
@@ -16,6 +18,23 @@ from jointbench.station.sources.recorded_session import (
     RecordedSession,
     record_session_file,
 )
+
+
+def require_bench(source: str) -> None:
+    """Refuse a file or folder where a plan or a bench is wanted.
+
+    Raises:
+        UsageError: it is there, and is no plan.
+    """
+    path = Path(source)
+    if not path.exists():
+        return
+    is_a = "a folder" if path.is_dir() else "a file, but no plan of runs"
+    raise UsageError(
+        f"{named(path)} is {is_a}; 'record' takes a plan whose name ends in '.toml', "
+        "or a bench such as 'sim:two-body-campaign' (files of other programs: "
+        "'jointbench import')"
+    )
 
 
 def run_record(

@@ -105,6 +105,14 @@ def read_record_plan(path: Path) -> RecordPlan:
         BadData: it cannot be read, or breaks a rule; the message names the key.
     """
     table = read_toml(path, RecordPlanTable)
+    block = table.acquisition.block
+    for run in table.runs:
+        if run.duration < block:
+            raise BadData(
+                f"{path}: run {run.name!r} lasts {run.duration:g} s, less than a block "
+                f"of {block:g} s; give it at least that, or another block in "
+                "[acquisition]"
+            )
     try:
         sensors = tuple(entry.sensor() for entry in table.sensors)
         require_unique(sensors)

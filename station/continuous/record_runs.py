@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import JointbenchError, UsageError
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
 from jointbench.acquisition.ni.sensor_calibration import (
@@ -39,6 +40,7 @@ from jointbench.station.measure.session_log import gap_words
 from jointbench.station.measure.teds_checks import teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.session_events.command_mailbox import CommandMailbox
 from jointbench.station.session_events.flow_events import ConditionDone, RunBegun
 from jointbench.station.session_events.view_events import SessionBegun
 
@@ -97,6 +99,7 @@ def run_record_plan(
         )
     check_session_name(out)
     check_outputs([plan_file, out], [json_target])
+    keep_memory_steady()
     screen, record = lasting_console(json_target), RunsRecord()
     with session_place(out, overwrite=overwrite) as place:
         with open_chassis(url) as opened, viewing(screen, place.own) as view:
@@ -163,7 +166,7 @@ def _record(
     record: RunsRecord,
 ) -> None:
     recorder, view, warnings = running
-    desk = SessionDesk(recorder, view)
+    desk = SessionDesk(recorder, view, mailbox=CommandMailbox(out))
     recorder.begin(out, _meta(plan, opened, recorder.sample_rate))
     desk.write(
         SessionBegun(

@@ -86,17 +86,22 @@ def run_doctor(
     for finding in _findings(url, case):
         found.append(finding)
         if screen.is_terminal:
-            screen.print(f"{finding.step}: {finding.what}: {finding.health.value}")
+            screen.print(f"{finding.step}: {_of(finding)} {finding.health.value}")
     rows = [(f.step, f.what, f.health.value, f.seen) for f in found]
     screen.print(table(url, ("step", "of", "", "seen"), rows, words={0, 1, 2, 3}))
     for finding in found:
         if finding.remedy:
-            screen.print(f"{finding.what}: {finding.remedy}", soft_wrap=True)
+            screen.print(f"{_of(finding)} {finding.remedy}", soft_wrap=True)
     open_ = [f for f in found if f.health is not Health.GOOD]
     words = f"{len(open_)} of {len(found)} findings need a look"
     screen.print(f"\n{words if open_ else 'all is good'}")
     write_json(json_target, {"source": url, "findings": [f.to_json() for f in found]})
     return tuple(found)
+
+
+def _of(finding: BenchFinding) -> str:
+    """Return what a finding is about with its colon, which 'ni:' has already."""
+    return f"{finding.what.removesuffix(':')}:"
 
 
 def _case(

@@ -16,6 +16,7 @@ from jointbench.acquisition.basics.errors import (
     JointbenchError,
     UsageError,
 )
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.ni.module_limits import require_capable
 from jointbench.acquisition.ni.sensor_calibration import (
@@ -52,6 +53,7 @@ from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.session_events.command_mailbox import CommandMailbox
 from jointbench.station.session_events.command_queue import CommandQueue
 from jointbench.station.sources.serial_port import line_name
 
@@ -116,6 +118,7 @@ def run_measure(
         )
     check_session_name(out)
     check_outputs([plan_file, out], [json_target])
+    keep_memory_steady()
     screen = lasting_console(json_target)
     with session_place(out, overwrite=overwrite) as place:
         with _naming_file(place, screen), open_chassis(url) as opened:
@@ -169,7 +172,12 @@ def measure(
             with RecorderProcess(
                 _setup(plan, opened), given_up=lambda: record.interrupted
             ) as recorder:
-                desk = SessionDesk(recorder, view, commands or CommandQueue())
+                desk = SessionDesk(
+                    recorder,
+                    view,
+                    commands or CommandQueue(),
+                    mailbox=CommandMailbox(out),
+                )
                 _record(plan, opened, out, (desk, warnings, record))
         except BaseException:
             # What went wrong first is what the operator has to know.

@@ -7,6 +7,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.recorder.recorder_process import RecorderProcess
 from jointbench.station.bench_view.live_view import LiveView
 from jointbench.station.measure.plan import Condition
+from jointbench.station.session_events.command_mailbox import CommandMailbox
 from jointbench.station.session_events.command_queue import (
     Answer,
     CommandQueue,
@@ -30,12 +31,14 @@ class SessionDesk:
         view: on this computer.
         commands: that wait; other views may submit theirs.
         warned: number of warnings so far.
+        mailbox: of commands from other processes, None for none.
     """
 
     recorder: RecorderProcess
     view: LiveView
     commands: CommandQueue = field(default_factory=CommandQueue)
     warned: int = 0
+    mailbox: CommandMailbox | None = None
     _asked: Asked | None = None
     _due: int = 0
     _followed: int = 0
@@ -82,6 +85,9 @@ class SessionDesk:
         command = self.view.command()
         if command is not None:
             self.commands.submit(command, by=_TERMINAL)
+        if self.mailbox is not None:
+            for sender, command in self.mailbox.take():
+                self.commands.submit(command, by=sender)
 
     def next_command(self) -> Ticket | None:
         """Return the next command, None without one."""

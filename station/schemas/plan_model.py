@@ -91,9 +91,9 @@ class PlanSensorTable(StrictTable):
 
         Raises:
             UnitError: a value has no unit, or a wrong one, or the range is not above
-                zero.
+                zero; the message names the sensor.
         """
-        largest = parse_value(self.range, self.quantity)
+        largest = self._parsed("range", self.range)
         if largest <= 0.0:
             raise UnitError(
                 f"range {self.range!r} of sensor {self.name!r} must be above zero; "
@@ -114,7 +114,7 @@ class PlanSensorTable(StrictTable):
                 Axis(
                     row.physical,
                     row.direction,
-                    parse_sensitivity(row.sensitivity, self.quantity),
+                    self._parsed("sensitivity", row.sensitivity),
                 )
                 for row in rows
             ),
@@ -125,9 +125,7 @@ class PlanSensorTable(StrictTable):
             serial=self.serial,
             calibrated=self.calibrated,
             calibration_months=self.calibration_months,
-            noise=None
-            if self.noise is None
-            else parse_value(self.noise, self.quantity),
+            noise=None if self.noise is None else self._parsed("noise", self.noise),
             certificate=self.certificate,
             sensitivity_sd=self.sensitivity_sd,
         )
@@ -135,8 +133,22 @@ class PlanSensorTable(StrictTable):
     def _excitation(self) -> float | None:
         """Return the current [A]; by default only sensors that usually need one."""
         if self.iepe is not None:
-            return _amperes(self.iepe)
+            return self._parsed("iepe", self.iepe)
         return None if self.quantity in _FED else 0.0
+
+    def _parsed(self, key: str, text: str) -> float:
+        """Return a value in SI.
+
+        Raises:
+            UnitError: it has no unit, or a wrong one; sensor and key are named.
+        """
+        try:
+            if key == "iepe":
+                return _amperes(text)
+            parse = parse_sensitivity if key == "sensitivity" else parse_value
+            return parse(text, self.quantity)
+        except UnitError as error:
+            raise UnitError(f"sensor {self.name!r}, {key}: {error}") from error
 
 
 def _amperes(text: str) -> float:

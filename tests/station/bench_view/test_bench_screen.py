@@ -43,7 +43,7 @@ from jointbench.station.session_events.flow_events import (
     Warned,
 )
 from jointbench.station.session_events.hit_commands import AcceptHit, RejectHit
-from jointbench.station.session_events.hit_events import HitJudged
+from jointbench.station.session_events.hit_events import GainForecast, HitJudged
 from jointbench.station.session_events.operator_events import (
     CommandAnswered,
     PauseChanged,
@@ -99,6 +99,22 @@ def after(*events: Event) -> SessionState:
     return state_after(SessionState(), stamped)
 
 
+def gain(hit: int) -> GainForecast:
+    """Return what two more hits would buy at five resonances, the last one worst."""
+    peaks = [
+        {
+            "frequency": 100.0 * k,
+            "damping": 0.01,
+            "frequency_sd": 0.01 * k,
+            "damping_sd": 0.03 * k,
+            "frequency_sd_after": 0.008 * k,
+            "damping_sd_after": 0.02 * k,
+        }
+        for k in range(1, 6)
+    ]
+    return GainForecast(hit, 2, peaks)
+
+
 ASKED = Asked("20 Nm, point 1", "1", 0, 126)
 RUN = RunBegun("20 Nm, point 1", "measurement", "1", 20.0)
 TRIAL = RunBegun("trial", "trial", "1", 20.0)
@@ -111,6 +127,7 @@ STATES: dict[str, tuple[Event, ...]] = {
     "trial": (BEGUN, TRIAL, ASKED, hit(0, "operator"), averaged(0, trial=True)),
     "good": (BEGUN, RUN, ASKED, hit(0), averaged(0)),
     "rejected": (BEGUN, RUN, ASKED, hit(0, "double", "two pulses " * 20), averaged(0)),
+    "gain": (BEGUN, RUN, ASKED, hit(0), averaged(0), gain(0)),
     "paused": (BEGUN, RUN, ASKED, hit(0), averaged(0), PauseChanged(True)),
     "cable": (BEGUN, RUN, ASKED, CableChanged("channel2, channel7")),
     "bolt": (BEGUN, BoltAsked(2, 4, 50.0)),
@@ -177,6 +194,16 @@ def test_the_verdict_is_a_band_of_colour_over_the_whole_width(
     assert word in band.plain
     assert band.cell_len == 80
     assert style in str(band.style)
+
+
+def test_what_two_more_hits_buy_is_in_hertz_and_percent_until_the_next_hit() -> None:
+    """The resonance whose damping is least certain; more of them on a wide screen."""
+    wanted = "2 more hits: 500.0 Hz ±0.05 to ±0.04 Hz, damping ±15 to ±10 %"
+    assert wanted in lines(STATES["gain"])
+    (wide,) = (s for s in lines(STATES["gain"], 160, 50) if "2 more hits" in s)
+    assert wide.startswith(f"{wanted}; 400.0 Hz")
+    later = (*STATES["gain"], hit(1, "weak"), averaged(1))
+    assert not any("more hits" in line for line in lines(later))
 
 
 def test_points_are_listed_as_done_open_and_incomplete() -> None:

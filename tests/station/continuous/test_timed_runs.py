@@ -171,6 +171,8 @@ def test_channels_that_are_full_or_dead_are_named_once() -> None:
     [
         ('range = "45 g"', 'range = "-45 g"', "range '-45 g' of sensor 'bed' must be"),
         ('duration = "120 s"', "", r"'runs\.0\.duration' is missing; add it$"),
+        ('"120 s"', '"1 ms"', r"run '3000 rpm' lasts 0\.001 s, less than a block of 0"),
+        ('"50 mV/Pa"', '"50 mV/g"', "sensor 'microphone', sensitivity: "),
         ('"120 s"', '"0 s"', r"value '0 s': Input should be greater than 0$"),
     ],
 )
@@ -181,3 +183,12 @@ def test_a_wrong_value_is_one_mistake(
     path = plan_file(tmp_path, "operating.toml", **{old: new})
     with pytest.raises(BadData, match=words):
         read_record_plan(path)
+
+
+def test_a_folder_to_record_is_said_to_be_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And not a source with an unknown scheme."""
+    assert command("record", tmp_path, "--out", tmp_path / "s.h5") == 2
+    words = " ".join(capsys.readouterr().err.split())
+    assert "is a folder; 'record' takes a plan whose name ends in '.toml'" in words

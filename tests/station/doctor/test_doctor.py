@@ -76,9 +76,12 @@ def test_a_plan_that_the_module_cannot_do_ends_before_the_stream() -> None:
 
 
 @pytest.mark.parametrize("source", ["ni:", "ni+grpc://127.0.0.1:9"])
-def test_no_driver_and_no_server_are_findings_with_a_remedy(source: str) -> None:
+def test_no_driver_and_no_server_are_findings_with_a_remedy(
+    source: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     """No traceback; the one finding states what to install or check."""
     found = findings(source, None)
+    assert "::" not in capsys.readouterr().out
     assert [f.health for f in found.values()] == [Health.BAD]
 
 

@@ -1,0 +1,68 @@
+"""Commands from another process to a session that is recorded."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from jointbench.acquisition.basics.errors import FormatError, UsageError
+from jointbench.acquisition.file_access.file_lock import is_held
+from jointbench.acquisition.session_file.follow_log import read_log
+from jointbench.station.bench_view.tell_session import run_tell
+from jointbench.station.session_events.command_mailbox import (
+    CommandMailbox,
+    post_command,
+)
+from jointbench.station.session_events.flow_commands import AddNote, PauseSession
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+RUN = "from jointbench.station.main import run; run()"
+
+
+def test_commands_are_taken_once_and_in_no_wrong_form(tmp_path: Path) -> None:
+    """What was there before is removed, and what is no command; nothing stays."""
+    session = tmp_path / "a[1].h5"
+    post_command(session, AddNote("of an earlier session"))
+    box = CommandMailbox(session)
+    sender = post_command(session, PauseSession()).name.rpartition(".")[2]
+    (tmp_path / f"{session.name}.ask.tell-zero").write_text("[1", encoding="utf-8")
+    assert list(box.take()) == [(sender, PauseSession())]
+    assert list(CommandMailbox(session).take()) == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_who_does_not_record_is_not_told(tmp_path: Path) -> None:
+    """And a word that is no command is refused before."""
+    with pytest.raises(UsageError, match="not being recorded"):
+        run_tell(tmp_path / "s.h5", "pause", json_target=None)
+    with pytest.raises(FormatError, match="did you mean 'pause'"):
+        run_tell(tmp_path / "s.h5", "pausse", json_target=None)
+
+
+def test_a_recording_answers_another_process(tmp_path: Path) -> None:
+    """A note is done, a point is refused, quitting ends an hour after seconds."""
+    plan, out, said = tmp_path / "p.toml", tmp_path / "s.h5", tmp_path / "a.json"
+    text = (EXAMPLES / "operating.toml").read_text(encoding="utf-8")
+    plan.write_text(text.replace('"120 s"', '"3600 s"'), encoding="utf-8")
+    words = [sys.executable, "-c", RUN, "record", str(plan), "--out", str(out)]
+    source = "sim:spindle?seed=1&rpm=3000&speed=1"
+    with subprocess.Popen(
+        [*words, "--source", source], stdout=subprocess.DEVNULL
+    ) as recording:
+        try:
+            while recording.poll() is None and not (out.exists() and is_held(out)):
+                time.sleep(0.2)
+            assert run_tell(out, "note chips", json_target=str(said))
+            assert not run_tell(out, "go 4", json_target=None)
+            assert run_tell(out, "quit yes", json_target=None)
+            assert recording.wait(120) == 5
+        finally:
+            recording.kill()
+    answer = json.loads(said.read_text(encoding="utf-8"))
+    assert answer["command"] == "note"
+    assert answer["done"] is True
+    notes = [e["words"] for e in read_log(out)[0] if e["kind"] == "note"]
+    assert notes == ["chips"]
