@@ -126,7 +126,9 @@ def test_a_socket_from_elsewhere_is_refused(screen: Served, origin: str | None) 
     async def talk(from_: str | None, headers: Mapping[str, str]) -> str:
         link = f"ws://{screen.access.hosts[0]}/talk"
         sent = None if from_ is None else Origin(from_)
-        async with connect(link, origin=sent, additional_headers=headers) as socket:
+        async with connect(
+            link, origin=sent, additional_headers=headers, open_timeout=60
+        ) as socket:
             return str(await socket.recv())
 
     with pytest.raises(InvalidStatus, match="403"):
