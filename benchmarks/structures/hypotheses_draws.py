@@ -64,9 +64,9 @@ is a frequency anywhere between the lowest and the highest.
 
 **Named** is the truth as the most probable hypothesis, **listed** among those that
 survive, whose median number follows. Parameters are those over all hypotheses, each
-with its probability; one that is called not identifiable (open) counts as right where
-its 95 % interval holds the truth. "First alone" takes those of the most probable hypothesis.
-Draws are added one by one (`--seeds`); the number of draws says how far a row has come.
+with its probability; one that is not identifiable (open) counts as right where
+its 95 % interval holds the truth. "First alone" takes those of the most probable
+hypothesis. Draws are added one by one (`--seeds`).
 
 | wrong | data | draws | named | listed | number | in 2 sd | all | first alone | open |
 |---|---|---|---|---|---|---|---|---|---|

@@ -54,7 +54,7 @@ def write_structure_report(
     """Write one offline HTML report about identified joints.
 
     Args:
-        path: of the page.
+        path: of the HTML file.
         name: of the model.
         structure: bodies and joints.
         model: the same, reduced.

@@ -15,7 +15,6 @@ from jointbench.analysis.structures.identification.structure_evidence import (
 )
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.body_moduli import (
-    SUPPORT,
     bodies_on_springs,
     modulus_name,
     with_moduli,
@@ -83,7 +82,7 @@ _PRIOR = {
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Hypothesis:
+class StructureHypothesis:
     """One way to read a measurement.
 
     Attributes:
@@ -118,7 +117,7 @@ def hypotheses_of(
     priors: Mapping[str, Prior],
     settings: HypothesisSettings,
     structure: Structure | None = None,
-) -> tuple[Hypothesis, ...]:
+) -> tuple[StructureHypothesis, ...]:
     """List the hypotheses about one state, the modes as measured first.
 
     Args:
@@ -136,7 +135,7 @@ def hypotheses_of(
         alone, ascending order is the best pairing), the modulus of each body and the
         springs of each body's supports off, unless they are unknown already.
     """
-    base = Hypothesis(
+    base = StructureHypothesis(
         HypothesisKind.AS_MEASURED,
         settings.of_kind(HypothesisKind.AS_MEASURED),
         model,
@@ -160,7 +159,7 @@ def hypotheses_of(
     return (base, *shared)
 
 
-def _missing(base: Hypothesis, paired: IntArray) -> list[Hypothesis]:
+def _missing(base: StructureHypothesis, paired: IntArray) -> list[StructureHypothesis]:
     """Leave out one predicted mode below the highest one, in order of frequency."""
     found = []
     for skipped in range(paired.size):
@@ -170,7 +169,7 @@ def _missing(base: Hypothesis, paired: IntArray) -> list[Hypothesis]:
     return found
 
 
-def _swapped(base: Hypothesis, paired: IntArray) -> list[Hypothesis]:
+def _swapped(base: StructureHypothesis, paired: IntArray) -> list[StructureHypothesis]:
     modes = base.evidence.modes
     if modes is None or (modes.damping_ratio is None and modes.shapes is None):
         return []
@@ -183,13 +182,16 @@ def _swapped(base: Hypothesis, paired: IntArray) -> list[Hypothesis]:
 
 
 def _paired(
-    base: Hypothesis, kind: HypothesisKind, order: IntArray, modes: tuple[int, ...]
-) -> Hypothesis:
+    base: StructureHypothesis,
+    kind: HypothesisKind,
+    order: IntArray,
+    modes: tuple[int, ...],
+) -> StructureHypothesis:
     evidence = replace(base.evidence, pairing=order)
     return replace(base, kind=kind, evidence=evidence, modes=modes)
 
 
-def _spurious(base: Hypothesis) -> list[Hypothesis]:
+def _spurious(base: StructureHypothesis) -> list[StructureHypothesis]:
     modes = base.evidence.modes
     if modes is None or modes.natural_frequency.size < 2:
         return []
@@ -243,7 +245,9 @@ def _chance(modes: MeasuredModes, at: int) -> float:
     return float(density)
 
 
-def _moduli(base: Hypothesis, settings: HypothesisSettings) -> list[Hypothesis]:
+def _moduli(
+    base: StructureHypothesis, settings: HypothesisSettings
+) -> list[StructureHypothesis]:
     bodies = [one.name for one in base.model.residual.components]
     found = []
     for body in bodies:
@@ -265,14 +269,14 @@ def _moduli(base: Hypothesis, settings: HypothesisSettings) -> list[Hypothesis]:
 
 
 def _supports(
-    base: Hypothesis, settings: HypothesisSettings, structure: Structure | None
-) -> list[Hypothesis]:
+    base: StructureHypothesis, settings: HypothesisSettings, structure: Structure | None
+) -> list[StructureHypothesis]:
     if structure is None:
         return []
     found = []
     for body in bodies_on_springs(structure):
-        name = f"{body}.{SUPPORT}"
         model = with_support_factor(base.model, structure, body)
+        name = model.names[-1]
         priors = {**base.priors, name: Prior(1.0, settings.support_sd)}
         found.append(
             replace(

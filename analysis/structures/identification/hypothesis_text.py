@@ -5,7 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.structures.identification.hypotheses import (
-    Hypothesis,
+    StructureHypothesis,
     HypothesisKind,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
@@ -23,7 +23,7 @@ from jointbench.analysis.structures.reduction.predict_modes import (
 
 
 def hypothesis_text(
-    one: Hypothesis, problem: StiffnessProblem, unknowns: FloatArray
+    one: StructureHypothesis, problem: StiffnessProblem, unknowns: FloatArray
 ) -> str:
     """Describe a hypothesis by what its best solution makes of it.
 

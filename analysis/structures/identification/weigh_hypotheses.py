@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.analysis.structures.identification.hypotheses import (
-    Hypothesis,
+    StructureHypothesis,
     HypothesisKind,
     HypothesisSettings,
     hypotheses_of,
@@ -55,7 +55,7 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 _NO_WEIGHT = 12.0
 # Most rounds in which directions of a joint are exchanged in the best solution ...
 _EXCHANGES = 3
-# ... which go on while chi2 falls below this part of itself.
+# ... as long as chi2 falls below this part of itself.
 _BETTER = 0.9
 
 
@@ -140,7 +140,7 @@ def weigh_hypotheses(
     settings = settings or HypothesisSettings()
     found = []
     for one in evidence:
-        base = Hypothesis(
+        base = StructureHypothesis(
             HypothesisKind.AS_MEASURED, 1.0, model, one, dict(priors or {})
         )
         plain = _posed(base, known, sought)
@@ -166,7 +166,9 @@ class _Search:
     surveyed: SurveyedStarts
     settings: HypothesisSettings
 
-    def ends(self, one: Hypothesis) -> tuple[StiffnessProblem, list[WeighedEnd]]:
+    def ends(
+        self, one: StructureHypothesis
+    ) -> tuple[StiffnessProblem, list[WeighedEnd]]:
         """Search one hypothesis; its distinct ends with their evidence."""
         problem = _posed(one, self.known, self.sought)
         ends = [descend(problem, at) for at in self._points(problem, one.evidence)]
@@ -196,7 +198,7 @@ class _Search:
 
 
 def _posed(
-    one: Hypothesis, known: JointValues | None, sought: Sequence[str] | None
+    one: StructureHypothesis, known: JointValues | None, sought: Sequence[str] | None
 ) -> StiffnessProblem:
     return pose_problem(
         one.model,
@@ -239,7 +241,7 @@ def _paired(
 
 def _weighed(
     label: str,
-    cases: Sequence[Hypothesis],
+    cases: Sequence[StructureHypothesis],
     tried: Sequence[tuple[StiffnessProblem, list[WeighedEnd]]],
     settings: HypothesisSettings,
 ) -> StateHypotheses:

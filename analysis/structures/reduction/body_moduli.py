@@ -19,7 +19,7 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.analysis.structures.reduction.structure_bodies import body_ranges
 
 MODULUS = "modulus"
-SUPPORT = "support"
+_SUPPORT = "support"
 
 
 def modulus_name(body: str) -> str:
@@ -34,7 +34,7 @@ def is_modulus(name: str) -> bool:
 
 def is_factor(name: str) -> bool:
     """Return whether a parameter is a factor, on a modulus or on supports."""
-    return is_modulus(name) or name.endswith(f".{SUPPORT}")
+    return is_modulus(name) or name.endswith(f".{_SUPPORT}")
 
 
 def with_moduli(model: ReducedModel, bodies: Sequence[str]) -> ReducedModel:
@@ -106,7 +106,7 @@ def with_support_factor(
     turn = residual.turn[residual.places[number]]
     block = turn.T @ (basis.T @ (springs @ basis)) @ turn
     block = 0.5 * (block + block.T)
-    return _with_blocks(model, model.stiffness - block, [block], [f"{body}.{SUPPORT}"])
+    return _with_blocks(model, model.stiffness - block, [block], [f"{body}.{_SUPPORT}"])
 
 
 def _with_blocks(
