@@ -5,8 +5,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.structures.identification.hypotheses import (
-    StructureHypothesis,
     HypothesisKind,
+    StructureHypothesis,
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
     StiffnessProblem,

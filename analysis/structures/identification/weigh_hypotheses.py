@@ -10,9 +10,9 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.analysis.structures.identification.hypotheses import (
-    StructureHypothesis,
     HypothesisKind,
     HypothesisSettings,
+    StructureHypothesis,
     hypotheses_of,
 )
 from jointbench.analysis.structures.identification.hypothesis_evidence import (
