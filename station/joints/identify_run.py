@@ -19,6 +19,13 @@ from jointbench.analysis.structures.identification.sensor_masses import (
     SensorMasses,
     sensor_masses,
 )
+from jointbench.analysis.structures.identification.structure_evidence import (
+    StructureEvidence,
+)
+from jointbench.analysis.structures.identification.weigh_hypotheses import (
+    StateHypotheses,
+    weigh_hypotheses,
+)
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.body_moduli import with_moduli
 from jointbench.analysis.structures.reduction.mounted_sensors import (
@@ -70,12 +77,14 @@ class IdentifiedStructure:
         reduced: the same in few coordinates.
         result: parameters with intervals, solutions and checks.
         theory: each joint beside the contact law; empty without a table [contact].
+        hypotheses: what else could explain each state; empty if not asked for.
     """
 
     structure: Structure
     reduced: ReducedModel
     result: StructureIdentification
     theory: tuple[TheoryRow, ...]
+    hypotheses: tuple[StateHypotheses, ...] = ()
 
 
 def identified_structure(
@@ -126,7 +135,31 @@ def identified_structure(
             structure=structure,
         )
     rows = _theory(settings, surface, preloads, result)
-    return IdentifiedStructure(structure, reduced, result, rows)
+    tried = _hypotheses(settings, structure, reduced, evidence, result)
+    return IdentifiedStructure(structure, reduced, result, rows, tried)
+
+
+def _hypotheses(
+    settings: StructureModel,
+    structure: Structure,
+    reduced: ReducedModel,
+    evidence: Sequence[StructureEvidence],
+    result: StructureIdentification,
+) -> tuple[StateHypotheses, ...]:
+    """Try what else could explain the measurement, unless the model says not to."""
+    table = settings.identify
+    if not table.hypotheses:
+        return ()
+    with working("trying hypotheses"):
+        return weigh_hypotheses(
+            reduced,
+            evidence,
+            known=known_values(table, reduced.names),
+            sought=table.sought,
+            priors=known_priors(table),
+            structure=structure,
+            start=result.solutions[0].parameters,
+        )
 
 
 def _surface(

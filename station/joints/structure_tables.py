@@ -108,7 +108,8 @@ class IdentifyTable(StrictTable):
     modulus of a body unknown, with this relative standard deviation around its table;
     `mass_sd` does the same for the mass of a sensor;
     `priors` hold stiffness and relative standard deviation of a joint's direction;
-    `known` holds the stiffness of the directions that are not `sought`.
+    `known` holds the stiffness of the directions that are not `sought`; `hypotheses`
+    tries what else could explain the modes.
     """
 
     data: Literal["frequencies", "modes", "frf"] = "modes"
@@ -125,6 +126,7 @@ class IdentifyTable(StrictTable):
     modulus_sd: dict[str, _Share] = Field(default_factory=dict)
     mass_sd: dict[str, _Share] = Field(default_factory=dict)
     priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)
+    hypotheses: bool = False
 
 
 class DesignTable(StrictTable):

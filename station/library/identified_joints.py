@@ -11,6 +11,9 @@ from jointbench.analysis.lumped.identified import Identification, JointParameter
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
 )
+from jointbench.analysis.structures.identification.weigh_hypotheses import (
+    StateHypotheses,
+)
 from jointbench.signal.modal.modes import ModalSettings
 from jointbench.station.desk.desk_results import chosen_at_desk
 from jointbench.station.files.toml_file import read_toml
@@ -41,9 +44,11 @@ class IdentifiedJoints(Shown):
 
     Attributes:
         result: of a lumped bench or of a meshed structure.
+        hypotheses: what else could explain each state of a meshed structure.
     """
 
     result: Identification | StructureIdentification
+    hypotheses: tuple[StateHypotheses, ...] = ()
 
     @property
     def parameters(self) -> tuple[JointParameter, ...]:
@@ -75,6 +80,11 @@ class IdentifiedJoints(Shown):
             for one in self.parameters
         ]
         reasons = [p.reason for p in self.parameters if p.reason]
+        reasons += [
+            f"{one.state}: {case.text}: {100 * case.probability:.3g} %"
+            for one in self.hypotheses
+            for case in one.surviving
+        ]
         said = tuple(dict.fromkeys([*self.result.reasons, *reasons]))
         title = f"Joints: {self.result.verdict.value} {VALUE_LEGEND}"
         columns = ("parameter", "value", "unit", "identifiable")
@@ -129,7 +139,7 @@ def identify(
             surfaces=[Path(one) for one in surface],
             options=options,
         )
-        return IdentifiedJoints(done.result)
+        return IdentifiedJoints(done.result, done.hypotheses)
     if not sessions:
         raise UsageError(f"'{path}' is a lumped bench and needs sessions, hits or FRFs")
     settings = ChainSettings(modal=ModalSettings(band=band))

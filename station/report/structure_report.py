@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The report on the joints of a structure: parameters, likelihoods, mode shapes."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -48,12 +49,21 @@ def write_structure_report(
     structure: Structure,
     model: ReducedModel,
     result: StructureIdentification,
-    theory: Section | None = None,
+    more: Sequence[Section | None] = (),
 ) -> None:
-    """Write one offline HTML report about identified joints."""
+    """Write one offline HTML report about identified joints.
+
+    Args:
+        path: of the HTML file.
+        name: of the model.
+        structure: bodies and joints.
+        model: the same, reduced.
+        result: of the identification.
+        more: further sections, after the parameters; None are left out.
+    """
     sections = [
         Section("parameters", "Joints", (_parameters(result), *_reasons(result))),
-        *([theory] if theory is not None else []),
+        *(one for one in more if one is not None),
         Section("states", "Modes", tuple(_state(one, model) for one in result.states)),
         Section("profiles", "Profile likelihood", tuple(_profiles(result))),
         Section("solutions", "Distinct solutions", (_solutions(result),)),

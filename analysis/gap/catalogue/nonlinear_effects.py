@@ -228,7 +228,8 @@ IWAN = LumpedEffect(
                 _SHARPNESS,
             ),
         ),
-        "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)",
+        "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi + 2): "
+        "chi is one less than there",
         {
             "jenkins": "four levels below gross slip: the slope of damping",
             "bouc_wen": "slow load cycles with reversals inside the loop",

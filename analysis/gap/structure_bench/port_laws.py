@@ -65,7 +65,8 @@ def iwan_sliders(
 
     Args:
         largest: slip displacement [m].
-        power: chi + 2 of Segalman's density [-], above 0.
+        power: chi + 1 of Segalman's density [-], above 0; chi + 2 with the chi that
+            `iwan` reports, which is one less.
         onset: end of the first cell over the largest slip displacement [-], below 1; 0
             for a cell as wide as the others.
 

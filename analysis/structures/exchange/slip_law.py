@@ -86,8 +86,10 @@ def law_of(
         k, force = np.array([values["kt"]]), np.array([values["Fs"]])
         return SliderLaw(name, k, force, remarks)
     if name in {"iwan", "iwan_segalman"}:
-        beta = values.get("beta", 0.0)
-        k, slip = _iwan(values["kt"], values["phimax"], values["chi"], beta)
+        # `iwan` counts chi from one below Segalman's.
+        power = values["chi"] + (2.0 if name == "iwan" else 1.0)
+        beta = 0.0 if name == "iwan" else values.get("beta", 0.0)
+        k, slip = _iwan(values["kt"], values["phimax"], power, beta)
         return SliderLaw(name, k, k * slip, remarks)
     if name == "power_damping":
         return SpeedLaw(name, values["c"], values["p"], remarks)
@@ -100,12 +102,14 @@ def law_of(
 
 
 def _iwan(
-    total: float, largest: float, chi: float, beta: float
+    total: float, largest: float, power: float, beta: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return stiffness [N/m] and slip displacement [m] of the sliders."""
+    """Return stiffness [N/m] and slip displacement [m] of the sliders.
+
+    The stiffness below a slip displacement phi grows as phi^power: Segalman's chi + 1.
+    """
     count = SLIDERS - (beta > 0)
     edges = np.concatenate([[0.0], np.geomspace(_LEAST_SLIP, 1.0, count)])
-    power = chi + 2.0 if beta == 0 else chi + 1.0
     share = np.diff(edges**power)
     centre = np.diff(edges ** (power + 1.0)) / share * power / (power + 1.0)
     if beta > 0:

@@ -47,8 +47,8 @@ from jointbench.analysis.structures.identification.stiffness_problem import (
 )
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
+    evidence_pairs,
     mac,
-    pair_modes,
     states,
 )
 from jointbench.analysis.structures.matrices.structure import Structure
@@ -282,7 +282,7 @@ def _state_fit(problem: StiffnessProblem, best: Optimum, row: int) -> StateFit:
     measured, likeness, chosen = np.zeros(0), np.zeros(0), elastic
     if evidence.modes is not None:
         measured = evidence.modes.natural_frequency
-        chosen = pair_modes(state, elastic, evidence.modes, evidence.outputs)
+        chosen = evidence_pairs(state, elastic, evidence)
         if evidence.modes.shapes is not None:
             shapes = (evidence.outputs @ state.shapes[:, chosen]).T.astype(complex)
             likeness = np.diag(mac(evidence.modes.shapes, shapes))

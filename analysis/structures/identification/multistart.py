@@ -102,12 +102,14 @@ def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum,
     A solution that one start alone has reached shows that others may be missed (Good
     1953, Biometrika 40, 237-264): further sets of starts are then used.
     """
-    found = [descend(problem, start) for start in _starts(problem, starts, seed)]
+    found = [
+        descend(problem, start) for start in starting_points(problem, starts, seed)
+    ]
     for more in range(1, _MORE_SETS + 1):
         if not _reached_once(admissible(found)):
             break
         # Seeds of other states are the next numbers.
-        points = _starts(problem, starts, seed + more * _SEEDS_APART)
+        points = starting_points(problem, starts, seed + more * _SEEDS_APART)
         found += [descend(problem, start) for start in points]
     return followed(problem, found)
 
@@ -127,8 +129,19 @@ def _same_solution(one: Optimum, other: Optimum) -> bool:
     return same_branch(one, other)
 
 
-def _starts(problem: StiffnessProblem, count: int, seed: int) -> list[FloatArray]:
-    """Spread stiffness over the box; damping follows at light damping ratios."""
+def starting_points(
+    problem: StiffnessProblem, count: int, seed: int
+) -> list[FloatArray]:
+    """Spread stiffness over the box; damping follows at light damping ratios.
+
+    Args:
+        problem: of the identification.
+        count: number of points.
+        seed: of the Latin hypercube.
+
+    Returns:
+        Logarithms, each of shape (n_unknowns,).
+    """
     from scipy.stats import qmc  # slow to import
 
     low, high = np.log(problem.model.box[0]), np.log(problem.model.box[1])

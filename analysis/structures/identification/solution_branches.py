@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.structures.identification.stiffness_descent import (
     descend,
     with_value,
@@ -72,19 +72,32 @@ def _along_branches(
 
 def _exchanged(problem: StiffnessProblem, found: Sequence[Optimum]) -> list[Optimum]:
     """Return admissible ends of descents with two directions of a joint exchanged."""
-    pairs = [
-        (one, other)
-        for one, other in combinations(range(problem.size), 2)
-        if _joint_of(problem, one) == _joint_of(problem, other) != ""
-    ]
     limit = min(found, key=lambda end: end.chi2).limit()
-    ends = []
-    for end in _distinct(in_order(problem, admissible(found)))[:_EXCHANGED]:
-        for one, other in pairs:
+    ends = [
+        descend(problem, start)
+        for end in _distinct(in_order(problem, admissible(found)))[:_EXCHANGED]
+        for start in exchanged_starts(problem, end)
+    ]
+    return [end for end in ends if end.chi2 < limit]
+
+
+def exchanged_starts(problem: StiffnessProblem, end: Optimum) -> list[FloatArray]:
+    """Return the unknowns of an end with two directions of a joint exchanged.
+
+    Args:
+        problem: of the identification.
+        end: of a search.
+
+    Returns:
+        Logarithms, each of shape (n_unknowns,), one for each pair of directions.
+    """
+    starts = []
+    for one, other in combinations(range(problem.size), 2):
+        if _joint_of(problem, one) == _joint_of(problem, other) != "":
             start = end.unknowns.copy()
             start[[one, other]] = start[[other, one]]
-            ends.append(descend(problem, start))
-    return [end for end in ends if end.chi2 < limit]
+            starts.append(start)
+    return starts
 
 
 def _joint_of(problem: StiffnessProblem, at: int) -> str:

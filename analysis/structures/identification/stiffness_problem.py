@@ -16,7 +16,7 @@ from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
     evidence_residual,
 )
-from jointbench.analysis.structures.reduction.body_moduli import is_modulus
+from jointbench.analysis.structures.reduction.body_moduli import is_factor, is_modulus
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
@@ -26,6 +26,8 @@ _BEYOND = 3.0
 _DAMPING_RANGE = (1e-7, 10.0)
 # Bounds of a factor on a modulus.
 _MODULUS_RANGE = (0.5, 2.0)
+# Bounds of a factor on the springs of supports.
+_SUPPORT_RANGE = (0.03, 30.0)
 # Bounds of a factor on the mass of a sensor, and the step of its derivative.
 _MASS_RANGE = (0.2, 5.0)
 _MASS_STEP = 1e-3
@@ -167,7 +169,7 @@ def pose_problem(
             raise BadData(f"no joint direction {name!r}; there are {list(names)}")
     count = len(names)
     wanted = np.array(
-        [sought is None or name in sought or is_modulus(name) for name in names]
+        [sought is None or name in sought or is_factor(name) for name in names]
     )
     if known is None and not wanted.all():
         left = [name for name, own in zip(names, wanted, strict=True) if not own]
@@ -180,18 +182,20 @@ def pose_problem(
             is_damping = at >= count
             name = names[at % count]
             if not wanted[at % count] or (
-                is_damping and (is_modulus(name) or not one.damped)
+                is_damping and (is_factor(name) or not one.damped)
             ):
                 continue
             label = _label(name, is_damping)
-            if len(evidence) > 1 and name not in shared and not is_modulus(name):
+            if len(evidence) > 1 and name not in shared and not is_factor(name):
                 label = f"{one.label}:{label}"
             columns[row, at] = place.setdefault(label, len(place))
     labels = [*place, *(masses.names if masses else ())]
     damping = np.array([label.endswith("_damping") for label in labels], float)
     low, high = _bounds(model, damping)
-    scales = np.array([is_modulus(label) for label in labels], bool)
-    low[scales], high[scales] = np.log(_MODULUS_RANGE)
+    for at, label in enumerate(labels):
+        if is_factor(label):
+            own = _MODULUS_RANGE if is_modulus(label) else _SUPPORT_RANGE
+            low[at], high[at] = np.log(own)
     expected, expected_sd = _prior_logs(labels, priors)
     if masses is not None:
         low[len(place) :], high[len(place) :] = np.log(_MASS_RANGE)
@@ -212,7 +216,7 @@ def pose_problem(
 
 
 def _label(name: str, is_damping: bool) -> str:
-    if is_modulus(name):
+    if is_factor(name):
         return name
     return f"{name}_{'damping' if is_damping else 'stiffness'}"
 

@@ -45,6 +45,8 @@ class StructureEvidence:
         outputs: rows of `readout` for the sensors of `modes` and `frf`, shape
             (n_outputs, r).
         inputs: rows of `readout` for the hit points of `frf`, shape (n_inputs, r).
+        pairing: number of the elastic predicted mode of each measured one, from 0,
+            shape (n_modes,); None pairs by MAC or by order.
     """
 
     label: str
@@ -52,6 +54,7 @@ class StructureEvidence:
     frf: Frf | None
     outputs: FloatArray
     inputs: FloatArray
+    pairing: IntArray | None = None
 
     def __post_init__(self) -> None:
         """Check that there are measurements, with their uncertainty."""
@@ -64,7 +67,7 @@ class StructureEvidence:
             )
         if self.frf is not None and np.any(np.asarray(self.frf.variance) <= 0):
             raise BadData(f"a variance of the FRFs of {self.label!r} is not above zero")
-        freeze(self, "outputs", "inputs")
+        freeze(self, "outputs", "inputs", "pairing")
 
     @property
     def damped(self) -> bool:
@@ -129,6 +132,21 @@ def pair_modes(
     return np.asarray(candidates[linear_sum_assignment(cost)[1]])
 
 
+def evidence_pairs(
+    state: ModalState, candidates: IntArray, evidence: StructureEvidence
+) -> IntArray:
+    """Return the predicted mode of each measured one: as given, or by `pair_modes`.
+
+    Raises:
+        BadData: there are more measured modes than predicted ones, or none at all.
+    """
+    if evidence.modes is None:
+        raise BadData(f"state {evidence.label!r} has no modes to pair")
+    if evidence.pairing is not None:
+        return np.asarray(candidates[evidence.pairing])
+    return pair_modes(state, candidates, evidence.modes, evidence.outputs)
+
+
 def _require_enough(measured: int, predicted: int) -> None:
     if measured > predicted:
         raise BadData(
@@ -161,10 +179,10 @@ def _modal_rows(
 ) -> tuple[FloatArray, FloatArray]:
     with_shapes = measured.shapes is not None and evidence.outputs.shape[0] > 1
     if measured.damping_ratio is None and not with_shapes:
-        return _frequencies_alone(model, measured, values)
+        return _frequencies_alone(model, evidence, measured, values)
     state = modal_state(model, values.stiffness)
     candidates = np.arange(state.rigid, model.modes)
-    pairs = pair_modes(state, candidates, measured, evidence.outputs)
+    pairs = evidence_pairs(state, candidates, evidence)
     change = _shape_changes(state, values.stiffness, pairs)
     blocks = [_frequency_rows(state, measured, values, pairs)]
     if measured.damping_ratio is not None and measured.damping_ratio_sd is not None:
@@ -176,16 +194,19 @@ def _modal_rows(
 
 
 def _frequencies_alone(
-    model: ReducedModel, measured: MeasuredModes, values: JointValues
+    model: ReducedModel,
+    evidence: StructureEvidence,
+    measured: MeasuredModes,
+    values: JointValues,
 ) -> tuple[FloatArray, FloatArray]:
     """Compare frequencies by the lowest modes alone, which is several times faster."""
     found = solve_reduced(model, values.stiffness)
     elastic = np.arange(found.rigid, found.eigenvalue.size)
     count = measured.natural_frequency.size
     _require_enough(count, elastic.size)
-    shapes = found.shapes[:, elastic[:count]]
-    flex = model.spread.diagonal(shapes)
-    level = found.eigenvalue[elastic[:count]]
+    chosen = elastic[:count] if evidence.pairing is None else elastic[evidence.pairing]
+    flex = model.spread.diagonal(found.shapes[:, chosen])
+    level = found.eigenvalue[chosen]
     return _log_rows(level, flex.T, measured, values)
 
 

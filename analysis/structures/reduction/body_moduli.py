@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Young's moduli of bodies as parameters of a reduced structure.
+"""Young's moduli and support springs of bodies as parameters of a reduced structure.
 
 A factor on the modulus of a body multiplies its stiffness matrix, as a joint's value
-multiplies that of the joint.
+multiplies that of the joint; a factor on its supports multiplies that of their springs.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,6 +19,7 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.analysis.structures.reduction.structure_bodies import body_ranges
 
 MODULUS = "modulus"
+_SUPPORT = "support"
 
 
 def modulus_name(body: str) -> str:
@@ -29,6 +30,11 @@ def modulus_name(body: str) -> str:
 def is_modulus(name: str) -> bool:
     """Return whether a parameter is a factor on a modulus."""
     return name.endswith(f".{MODULUS}")
+
+
+def is_factor(name: str) -> bool:
+    """Return whether a parameter is a factor, on a modulus or on supports."""
+    return is_modulus(name) or name.endswith(f".{_SUPPORT}")
 
 
 def with_moduli(model: ReducedModel, bodies: Sequence[str]) -> ReducedModel:
@@ -45,7 +51,7 @@ def with_moduli(model: ReducedModel, bodies: Sequence[str]) -> ReducedModel:
     Raises:
         UsageError: there is no such body.
     """
-    residual, size = model.residual, model.size
+    residual = model.residual
     names = [one.name for one in residual.components]
     stiffness, blocks, numbers = model.stiffness.copy(), [], []
     for body in bodies:
@@ -59,19 +65,69 @@ def with_moduli(model: ReducedModel, bodies: Sequence[str]) -> ReducedModel:
         numbers.append(number)
     if not blocks:
         return model
+    whole = _with_blocks(model, stiffness, blocks, list(map(modulus_name, bodies)))
+    return replace(whole, residual=replace(residual, factors=tuple(numbers)))
+
+
+def bodies_on_springs(structure: Structure) -> tuple[str, ...]:
+    """Return the bodies whose supports are springs; glued ones have one name."""
+    springs = structure.springs
+    return tuple(
+        one.name
+        for one in body_ranges(structure)
+        if springs[one.low : one.high, one.low : one.high].nnz
+    )
+
+
+def with_support_factor(
+    model: ReducedModel, structure: Structure, body: str
+) -> ReducedModel:
+    """Add a factor on the support springs of a body to the parameters of a model.
+
+    Args:
+        model: reduced structure; its basis is that of the stated springs.
+        structure: the same on its meshes.
+        body: one of `bodies_on_springs`.
+
+    Returns:
+        The model with the parameter ``"<body>.support"`` last, 1 as stated.
+
+    Raises:
+        UsageError: the body stands on no springs.
+    """
+    known = bodies_on_springs(structure)
+    if body not in known:
+        raise UsageError(f"no body {body!r} on springs; there are {list(known)}")
+    ranges = {one.name: (at, one) for at, one in enumerate(body_ranges(structure))}
+    number, own = ranges[body]
+    residual = model.residual
+    basis = residual.components[number].basis
+    springs = structure.springs[own.low : own.high, own.low : own.high]
+    turn = residual.turn[residual.places[number]]
+    block = turn.T @ (basis.T @ (springs @ basis)) @ turn
+    block = 0.5 * (block + block.T)
+    return _with_blocks(model, model.stiffness - block, [block], [f"{body}.{_SUPPORT}"])
+
+
+def _with_blocks(
+    model: ReducedModel,
+    stiffness: FloatArray,
+    blocks: list[FloatArray],
+    names: list[str],
+) -> ReducedModel:
+    """Return the model with parameters that multiply full matrices."""
     still = model.strains.shape[1]
     spread = JointSpread(
-        size,
-        (*model.spread.columns, np.arange(size)),
+        model.size,
+        (*model.spread.columns, np.arange(model.size)),
         (*model.spread.blocks, np.array(blocks)),
     )
     return replace(
         model,
         stiffness=0.5 * (stiffness + stiffness.T),
         spread=spread,
-        residual=replace(residual, factors=tuple(numbers)),
         strains=np.concatenate([model.strains, np.zeros((len(blocks), still, still))]),
-        names=(*model.names, *map(modulus_name, bodies)),
+        names=(*model.names, *names),
         guess=None,
     )
 

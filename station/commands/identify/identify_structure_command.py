@@ -16,6 +16,11 @@ from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.joints.contact_comparison import (
     theory_json,
 )
+from jointbench.station.joints.hypothesis_output import (
+    hypotheses_json,
+    hypothesis_section,
+    show_hypotheses,
+)
 from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
@@ -51,8 +56,11 @@ def run_identify_structure(
     )
     result, rows = done.result, done.theory
     show_structure(result, json_target)
+    show_hypotheses(done.hypotheses, json_target)
     show_theory(rows, json_target)
     content = structure_json(result, done.reduced.names)
+    if done.hypotheses:
+        content["hypotheses"] = hypotheses_json(done.hypotheses)
     write_json(json_target, content | ({"theory": theory_json(rows)} if rows else {}))
     if report is not None:
         from jointbench.station.report.structure_report import write_structure_report
@@ -63,7 +71,7 @@ def run_identify_structure(
             done.structure,
             done.reduced,
             result,
-            theory_section(rows),
+            (hypothesis_section(done.hypotheses), theory_section(rows)),
         )
     return result.verdict is not IdentificationVerdict.INCONSISTENT and all(
         one.agrees for one in result.full_check

@@ -221,3 +221,19 @@ def test_what_cannot_be_written_or_read_is_said(skew: Structure) -> None:
         calculix_joint.read_frequencies("")
     with pytest.raises(BadData, match="in no piece"):
         joint_pieces("joint", skew.faces[0], (disc((9.0, 9.0), 0.01),), K, C)
+
+
+@pytest.mark.parametrize(("name", "power"), [("iwan", 1.5), ("iwan_segalman", 0.5)])
+def test_the_exponent_of_an_iwan_law_is_that_of_its_effect(
+    name: str, power: float
+) -> None:
+    """Stiffness below phi grows as phi^(chi + 1) in Segalman's law, at any beta."""
+    law = law_of(name, {"kt": 1e8, "phimax": 1e-6, "chi": -0.5, "beta": 0.0}, ())
+    assert not isinstance(law, SpeedLaw)
+    slip = law.slip_force / law.stiffness
+    below = np.cumsum(law.stiffness) / 1e8
+    # The edge between two sliders lies between their mean slip displacements.
+    edge = np.sqrt(slip[2:-1] * slip[3:]) / 1e-6
+    assert_allclose(
+        np.polyfit(np.log(edge), np.log(below[2:-1]), 1)[0], power, rtol=0.03
+    )
