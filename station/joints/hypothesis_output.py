@@ -17,6 +17,10 @@ NOTE = (
     "Each hypothesis is searched by itself. Its probability is that of the measurement "
     "under it (evidence, Laplace's approximation) times that before the measurement."
 )
+NONE_FITS = (
+    "none of them explains the measurement: more than one fault, or another one; check "
+    "supports, material and masses"
+)
 
 
 def show_hypotheses(states: Sequence[StateHypotheses], json_target: str | None) -> None:
@@ -36,6 +40,8 @@ def show_hypotheses(states: Sequence[StateHypotheses], json_target: str | None) 
         screen.print(
             table(f"{_title(one)} {VALUE_LEGEND}", _heads(one), _rows(one)),
         )
+        if not one.fits:
+            screen.print(f"  {NONE_FITS}", markup=False)
 
 
 def hypothesis_section(states: Sequence[StateHypotheses]) -> Section | None:
@@ -43,7 +49,10 @@ def hypothesis_section(states: Sequence[StateHypotheses]) -> Section | None:
     if not states:
         return None
     items: list[Item] = [Text(NOTE)]
-    items += [DataTable(_title(one), _heads(one), tuple(_rows(one))) for one in states]
+    for one in states:
+        items.append(DataTable(_title(one), _heads(one), tuple(_rows(one))))
+        if not one.fits:
+            items.append(Text(f"{one.state}: {NONE_FITS}", "notice"))
     return Section("hypotheses", "Hypotheses", tuple(items))
 
 
@@ -52,6 +61,7 @@ def hypotheses_json(states: Sequence[StateHypotheses]) -> list[dict[str, Any]]:
     return [
         {
             "state": one.state,
+            "fits": one.fits,
             "tried": [_hypothesis_json(case) for case in one.hypotheses],
             "parameters": _parameters_json(one.parameters),
         }

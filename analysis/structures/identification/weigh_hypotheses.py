@@ -8,6 +8,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.analysis.structures.identification.hypotheses import (
     HypothesisKind,
@@ -51,6 +52,8 @@ from jointbench.analysis.structures.reduction.predict_modes import (
 )
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
+# No hypothesis fits if the probability of a larger chi2 is below this.
+_POOR_FIT = 1e-3
 # Ends whose evidence is below the best one's by this in ln carry no weight.
 _NO_WEIGHT = 12.0
 # Most rounds in which directions of a joint are exchanged in the best solution ...
@@ -90,11 +93,14 @@ class StateHypotheses:
         state: its label.
         hypotheses: that were tried.
         parameters: over all of them, each with its probability.
+        fits: whether one of them explains the measurement, with the noise factor at
+            its largest. If none does, probabilities only order what is wrong.
     """
 
     state: str
     hypotheses: tuple[WeighedHypothesis, ...]
     parameters: tuple[JointParameter, ...]
+    fits: bool
 
     @property
     def surviving(self) -> tuple[WeighedHypothesis, ...]:
@@ -276,4 +282,10 @@ def _weighed(
         )
     names = tried[0][0].names
     found.sort(key=lambda one: -one.probability)
-    return StateHypotheses(label, tuple(found), mixed_parameters(parts, names))
+    allowed = settings.largest_noise**2
+    fits = any(
+        one.chi2 <= allowed * chi2_limit(_POOR_FIT, one.rows)
+        for one in found
+        if one.survives
+    )
+    return StateHypotheses(label, tuple(found), mixed_parameters(parts, names), fits)
