@@ -231,7 +231,7 @@ Written by `python benchmarks/screen/live.py`. `jointbench bench`, simulated cha
 |---|---|---|---|---|
 {rows}
 
-A page draws when new bins arrive, at most 20 times a second here (one block, one set of bins). The frozen page runs an endless loop; it hinders neither server nor recorder.
+A page draws when new bins arrive, at most 20 times a second here (one block, one set of bins). The frozen page runs an endless loop; it hinders neither server nor recorder. A page draws less often where other work takes the cores, as in this run: the sets that it has not drawn are drawn with the next one.
 
 ## Delay of a verdict
 From the last sample of the record of a hit to the verdict on the page, {len(waited)} hits: median {statistics.median(waited):.2f} s, 90 % below {waited[int(0.9 * len(waited))]:.2f} s, largest {waited[-1]:.2f} s. It includes a block of {1000 * BLOCK:g} ms that a sample waits for at most.
