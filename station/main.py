@@ -17,7 +17,7 @@ from jointbench.station.commands.bench_commands import (
     measure_command,
     record_command,
     simulate_command,
-    tell_command,
+    send_command,
     watch_command,
 )
 from jointbench.station.commands.contact_command import (
@@ -74,7 +74,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "bench": bench_command,
         "record": record_command,
         "watch": watch_command,
-        "tell": tell_command,
+        "send": send_command,
         "doctor": doctor_command,
         "calibrate": calibrate_command,
         "profile": profile_command,

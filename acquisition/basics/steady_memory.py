@@ -18,7 +18,7 @@ def keep_memory_steady() -> bool:
     megabytes a minute for as long as the computer is busy.
 
     Returns:
-        Whether the C library was told; others than glibc need not be.
+        Whether the C library took the settings; others than glibc need not be.
 
     Source:
         mallopt(3), section "dynamic mmap threshold".

@@ -136,7 +136,7 @@ def watch_command(
     run_watch(session, once=once, json_target=json)
 
 
-def tell_command(
+def send_command(
     session: Annotated[
         Path, typer.Argument(metavar="SESSION", help="Session that is being recorded.")
     ],
@@ -151,19 +151,19 @@ def tell_command(
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Tell a session that is being recorded what to do.
+    """Send a command to a session that is being recorded.
 
     The command goes to the 'measure' or 'record' that writes the session, as if it
     was typed there; its answer is printed. 'watch --once' prints the state.
 
     Examples:
-        jointbench tell session.h5 pause
-        jointbench tell session.h5 note bolt 2 rubs
-        jointbench tell session.h5 quit yes
+        jointbench send session.h5 pause
+        jointbench send session.h5 note bolt 2 rubs
+        jointbench send session.h5 quit yes
     """
-    from jointbench.station.bench_view.tell_session import run_tell
+    from jointbench.station.bench_view.send_command import run_send
 
-    done = run_tell(session, " ".join(words), json_target=json)
+    done = run_send(session, " ".join(words), json_target=json)
     return 0 if done else EXIT_QUALITY
 
 

@@ -58,13 +58,13 @@ def post_command(session: Path, command: Command) -> Path:
         command: what is asked for.
 
     Returns:
-        The file, whose suffix is the sender in the answer; it is gone once the command
-        was taken.
+        The file, whose suffix is the sender in the answer; it is removed when the command
+        is taken.
 
     Raises:
         OSError: the folder cannot be written.
     """
-    name = f"{session.name}.ask.tell-{uuid.uuid4().hex[:12]}"
+    name = f"{session.name}.ask.send-{uuid.uuid4().hex[:12]}"
     part, path = session.with_name(f".{name}.part"), session.with_name(name)
     part.write_text(json.dumps(command_to_json(command)), encoding="utf-8")
     part.replace(path)
@@ -72,4 +72,4 @@ def post_command(session: Path, command: Command) -> Path:
 
 
 def _posted(session: Path) -> list[Path]:
-    return sorted(session.parent.glob(f"{escape(session.name)}.ask.tell-*"))
+    return sorted(session.parent.glob(f"{escape(session.name)}.ask.send-*"))

@@ -33,7 +33,7 @@ OF_COMMANDS = {
     "profile": "needs hardware",
     "record": "takes minutes",
     "recover": "needs an interrupted recording",
-    "tell": "needs hardware",
+    "send": "needs hardware",
     "simulate": "runs until Ctrl-C",
 }
 """Why first examples of the help are not run."""

@@ -11,7 +11,7 @@ import pytest
 from jointbench.acquisition.basics.errors import FormatError, UsageError
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.session_file.follow_log import read_log
-from jointbench.station.bench_view.tell_session import run_tell
+from jointbench.station.bench_view.send_command import run_send
 from jointbench.station.session_events.command_mailbox import (
     CommandMailbox,
     post_command,
@@ -28,18 +28,18 @@ def test_commands_are_taken_once_and_in_no_wrong_form(tmp_path: Path) -> None:
     post_command(session, AddNote("of an earlier session"))
     box = CommandMailbox(session)
     sender = post_command(session, PauseSession()).name.rpartition(".")[2]
-    (tmp_path / f"{session.name}.ask.tell-zero").write_text("[1", encoding="utf-8")
+    (tmp_path / f"{session.name}.ask.send-zero").write_text("[1", encoding="utf-8")
     assert list(box.take()) == [(sender, PauseSession())]
     assert list(CommandMailbox(session).take()) == []
     assert list(tmp_path.iterdir()) == []
 
 
-def test_who_does_not_record_is_not_told(tmp_path: Path) -> None:
+def test_a_session_that_is_not_recorded_takes_no_command(tmp_path: Path) -> None:
     """And a word that is no command is refused before."""
     with pytest.raises(UsageError, match="not being recorded"):
-        run_tell(tmp_path / "s.h5", "pause", json_target=None)
+        run_send(tmp_path / "s.h5", "pause", json_target=None)
     with pytest.raises(FormatError, match="did you mean 'pause'"):
-        run_tell(tmp_path / "s.h5", "pausse", json_target=None)
+        run_send(tmp_path / "s.h5", "pausse", json_target=None)
 
 
 def test_a_recording_answers_another_process(tmp_path: Path) -> None:
@@ -55,9 +55,9 @@ def test_a_recording_answers_another_process(tmp_path: Path) -> None:
         try:
             while recording.poll() is None and not (out.exists() and is_held(out)):
                 time.sleep(0.2)
-            assert run_tell(out, "note chips", json_target=str(said))
-            assert not run_tell(out, "go 4", json_target=None)
-            assert run_tell(out, "quit yes", json_target=None)
+            assert run_send(out, "note chips", json_target=str(said))
+            assert not run_send(out, "go 4", json_target=None)
+            assert run_send(out, "quit yes", json_target=None)
             assert recording.wait(120) == 5
         finally:
             recording.kill()

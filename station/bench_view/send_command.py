@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench tell``: a command to a session that another process records."""
+"""``jointbench send``: a command to a session that another process records."""
 
 import time
 from contextlib import suppress
@@ -23,7 +23,7 @@ _EVERY = 0.5  # [s] between looks at the log
 _PATIENCE = 60.0  # [s] for an answer
 
 
-def run_tell(
+def run_send(
     session: Path,
     words: str,
     *,
@@ -43,7 +43,7 @@ def run_tell(
 
     Raises:
         FormatError: there is no such command.
-        UsageError: the session is not being recorded, or cannot be told.
+        UsageError: the session is not being recorded, or cannot be reached.
         InstrumentError: it does not answer.
     """
     check_outputs([session], [json_target])
