@@ -240,7 +240,11 @@ def _all_steps(session: Session) -> Iterator[tuple[_Owner, Step]]:
 def _detail(step: Step) -> str:
     """Return details as a JSON list of pairs, which keeps their order and types."""
     pairs = [[key, _plain(value)] for key, value in step.detail]
-    return json.dumps(pairs, ensure_ascii=False)
+    text = json.dumps(pairs, ensure_ascii=False)
+    if any("\ud800" <= letter <= "\udfff" for letter in text):
+        # Half a pair of a foreign terminal is no Unicode; a session never ends for it.
+        return json.dumps(pairs)
+    return text
 
 
 def _plain(value: str | float | int | bool) -> str | float | int | bool:

@@ -107,7 +107,10 @@ def _by_parts(
     values, damped = start, _DAMPED
     gram, gradient, cost = _sums(peak, values, pivot)
     for _ in range(_EVALUATIONS):
-        matrix = gram + damped * np.diag(np.diag(gram))
+        scale = np.diag(gram)
+        # A parameter that changes nothing stays where it is.
+        scale = np.where(scale > 0.0, scale, scale.max())
+        matrix = gram + damped * np.diag(scale)
         moved = values - scipy.linalg.solve(matrix, gradient, assume_a="pos")
         further = _sums(peak, moved, pivot)
         fall = cost - further[2]

@@ -52,6 +52,8 @@ def save_choices(state: DeskState) -> Path | None:
     if not state.log and not state.chain.amplitude:
         return None
     target = state.subject.results
+    if len(state.log) == 1 and _stored(state.subject) is None:
+        set_aside(target)  # choices on an earlier content of the file
     write_results(target, state.chain, state.subject.files)
     return target
 

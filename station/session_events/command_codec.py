@@ -50,6 +50,8 @@ _KINDS: Mapping[str, type[Command]] = {
 }
 MOST_CHARACTERS = 500
 """Of a text in a command; a note is a line."""
+_MOST_DIGITS = 9
+"""Of the number of a hit."""
 
 
 def command_to_json(command: Command) -> dict[str, object]:
@@ -76,7 +78,7 @@ def command_from_json(content: Mapping[str, Any]) -> Command:
             )
         _require_type(kind.kind, name, value, hints[name])
         if hints[name] is float:
-            given[name] = float(value)
+            given[name] = _number(kind.kind, name, value)
     for name, field in known.items():
         if field.default is MISSING and name not in given:
             raise FormatError(f"command {kind.kind!r} needs its argument {name!r}")
@@ -105,7 +107,7 @@ def typed_command(line: str) -> Command:
         raise FormatError(f"{kind.kind!r} stands alone; {shown(rest)} is too much")
     value: object = rest
     if kind in {RejectHit, AcceptHit}:
-        if not rest.isdecimal():
+        if not rest.isdecimal() or len(rest) > _MOST_DIGITS:
             raise FormatError(
                 f"{kind.kind!r} takes the number of a hit, not {shown(rest)}; for "
                 f"example '{kind.kind} 17'"
@@ -143,8 +145,30 @@ def _require_type(kind: str, name: str, value: object, wanted: Any) -> None:
         raise FormatError(
             f"argument {name!r} of command {kind!r} is {shown(value)}; it is {words}"
         )
+    if isinstance(value, str) and not _is_storable(value):
+        raise FormatError(
+            f"argument {name!r} of command {kind!r} is {shown(value)}, which has "
+            "characters that no file can hold; write plain text"
+        )
     if isinstance(value, str) and len(value) > MOST_CHARACTERS:
         raise FormatError(
             f"argument {name!r} of command {kind!r} has {len(value)} characters, at "
             f"most {MOST_CHARACTERS}"
         )
+
+
+def _number(kind: str, name: str, value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise FormatError(
+            f"argument {name!r} of command {kind!r} is too large a number"
+        ) from None
+
+
+def _is_storable(text: str) -> bool:
+    """Return whether a text is Unicode without zero characters."""
+    try:
+        return b"\x00" not in text.encode("utf-8")
+    except UnicodeEncodeError:
+        return False

@@ -134,7 +134,7 @@ def compare_assemblies(
         for quantity, one in rows.items()
     }
     said = {one.latest.change for one in found.values()}
-    order = (JointChange.CHANGED, JointChange.SCATTER, JointChange.OPEN)
+    order = (JointChange.CHANGED, JointChange.OPEN, JointChange.SCATTER)
     change = next(c for c in order if c in said)
     by_torque = bool(np.isfinite(data.states.torque).all())
     return Reassembly(change, reassembled, by_torque, found)

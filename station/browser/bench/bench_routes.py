@@ -58,7 +58,7 @@ def bench_part(
             return PlainTextResponse("the command is too long", 413)
         try:
             asked = _command(body)
-        except (ValueError, FormatError) as error:
+        except (ValueError, RecursionError, FormatError) as error:
             return PlainTextResponse(str(error), 400)
         return JSONResponse(await submit(asked))
 

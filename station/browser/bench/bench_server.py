@@ -24,6 +24,7 @@ from jointbench.station.browser.bench.screen_link import (
 from jointbench.station.browser.bench.session_feed import SessionFeed
 from jointbench.station.browser.guard.screen_access import ScreenAccess
 
+_LOOK = 0.2  # [s], for the end of the server
 _PATIENCE = 5.0
 """For the answer to a command [s]; a bolt that is tightened may delay it."""
 
@@ -50,7 +51,8 @@ def run_bench_server(
     thread.start()
     try:
         while thread.is_alive():
-            desk.take(link.recv())
+            if link.poll(_LOOK):
+                desk.take(link.recv())
     except (EOFError, OSError):
         server.should_exit = True
     thread.join()

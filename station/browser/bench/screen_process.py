@@ -74,7 +74,6 @@ class ScreenProcess:
         self._closing = threading.Event()
         self._watched = 0
         self._unwatched_since = time.monotonic()
-        self._link: Connection | None = None
         self._thread = threading.Thread(target=self._keep, name="screen", daemon=True)
         self._thread.start()
 
@@ -90,9 +89,6 @@ class ScreenProcess:
     ) -> None:
         """End serving."""
         self._closing.set()
-        if self._link is not None:
-            with suppress(OSError):
-                self._link.close()
         self._thread.join(_LAST_WORD)
         self._listening.close()
 
@@ -121,7 +117,6 @@ class ScreenProcess:
     def _serve_once(self) -> None:
         context = multiprocessing.get_context("spawn")
         link, far = context.Pipe()
-        self._link = link
         process = context.Process(
             target=run_bench_server,
             args=(far, self._listening, self._serving),
@@ -134,7 +129,8 @@ class ScreenProcess:
         self.process_id = process.pid or 0
         with suppress(EOFError, OSError):
             while not self._closing.is_set():
-                self._take(link, link.recv())
+                if link.poll(_LOOK):
+                    self._take(link, link.recv())
         with suppress(OSError):
             link.close()
         self._watch(0)

@@ -163,6 +163,8 @@ class SessionFeed:
             self._envelope(tail, stored)
         entries = tail.entries()
         if entries:
+            # What they judge is in the file; the length read before may be older.
+            tail.stored()
             self._take(entries)
         return fresh or bool(entries)
 
@@ -198,7 +200,7 @@ class SessionFeed:
             return
         with suppress(OSError, RuntimeError):
             samples = self._tail.read(hit.start, hit.stop)
-            if samples.shape[1]:
+            if samples.shape[1] == hit.stop - hit.start:
                 self._pictures[hit.number] = hit_picture(
                     hit,
                     samples,

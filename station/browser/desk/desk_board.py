@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What the screens of the desk share: subjects, their states, one choice at a time."""
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
-from math import isfinite
 from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar
@@ -145,7 +145,7 @@ def _choice(asked: Mapping[str, Any]) -> tuple[ChoiceAction, dict[str, Any]]:
             continue
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise UsageError(f"{name} must be a number")
-        if not isfinite(value):
+        if not abs(value) <= sys.float_info.max:
             raise UsageError(f"{name} must be finite")
         what[name] = float(value)
     order = asked.get("order", 0)

@@ -160,7 +160,7 @@ def _post(take: Callable[[int, dict[str, Any]], Any]) -> Endpoint:
                 return PlainTextResponse("a choice is a JSON object", 400)
             number = request.path_params["number"]
             content = await run_in_threadpool(take, number, asked)
-        except (JointbenchError, ValueError) as error:
+        except (JointbenchError, ValueError, RecursionError) as error:
             return PlainTextResponse(str(error), 400)
         return JSONResponse(content)
 

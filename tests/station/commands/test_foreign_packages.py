@@ -227,9 +227,11 @@ def test_a_package_that_cannot_be_used_is_one_warning_and_the_command_continues(
         for i, (f, a) in enumerate(zip(FORCE, ACCELERATION, strict=True))
     ]
     hits.write_text("\n".join([*rows, ""]), encoding="utf-8")
+    again = tmp_path / "again.csv"
+    again.write_text("\n".join([*rows[1:], ""]), encoding="utf-8")
     columns = ("--columns", "time:s,force:N,acceleration:m/s^2")
     out = tmp_path / "s.h5"
-    done = started(site, "import", hits, hits, "--out", out, *columns)
+    done = started(site, "import", hits, again, "--out", out, *columns)
     assert done.returncode == 0, done.stderr
     assert len(read_session(out).recordings) == 2
     (line,) = done.stderr.splitlines()

@@ -69,7 +69,7 @@ def test_printed_frequencies_give_joints_a_page_and_the_contracts_keys(
         "unit",
         "identifiable",
     }
-    assert '"mesh3d"' in page.read_text(encoding="utf-8")
+    assert 'class="scene"' in page.read_text(encoding="utf-8")
 
 
 def test_what_is_open_is_shown_as_the_range_of_all_admissible(
