@@ -16,8 +16,8 @@ from jointbench.station.commands.bench_commands import (
     doctor_command,
     measure_command,
     record_command,
-    simulate_command,
     send_command,
+    simulate_command,
     watch_command,
 )
 from jointbench.station.commands.contact_command import (
