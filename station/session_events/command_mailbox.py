@@ -58,8 +58,8 @@ def post_command(session: Path, command: Command) -> Path:
         command: what is asked for.
 
     Returns:
-        The file, whose suffix is the sender in the answer; it is removed when the command
-        is taken.
+        The file, whose suffix is the sender in the answer; it is removed when the
+        command is taken.
 
     Raises:
         OSError: the folder cannot be written.
