@@ -25,6 +25,8 @@ KEYS = (
     "a accept  r reject  u undo  h reject number  p repeat point  n next  g go to",
     "t note  space pause  w warnings seen  c C channel  : command  q quit",
 )
+RUN_KEYS = ("n next run  t note  w warnings seen  : command  q quit",)
+"""While timed runs are recorded, which have no hits."""
 _SINGLE: dict[str, Callable[[], Command]] = {
     "a": AcceptHit,
     "r": RejectHit,

@@ -56,6 +56,8 @@ def progress_line(state: SessionState, now: float) -> Text:
     if state.run is not None and state.run.duration is not None:
         rest = max(0.0, state.run_time + state.run.duration - end)
         return Text(f"{_clock(elapsed)} elapsed  {_clock(rest)} left of this run")
+    if not conditions:
+        return Text(f"{_clock(elapsed)} elapsed")
     left = seconds_left(state, end)
     here = sum(c.left for c in conditions if c.mark is ConditionMark.NOW)
     words = [

@@ -86,6 +86,8 @@ def _task(state: SessionState) -> tuple[str, str, str]:
     if state.ended is not None:
         how = "interrupted" if state.ended.interrupted else "all is recorded"
         return "END", f"the recording has ended: {how}", "bold"
+    if state.begun is None and state.last < 0:
+        return "WAIT", "the device and the session file are opened", "bold"
     if state.open_loops:
         words = f"sensor loop open: {state.open_loops}; hits wait for the cable"
         return "CABLE", words, "bold red"

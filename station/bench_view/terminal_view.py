@@ -15,7 +15,11 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.station.bench_view.bell import Bell
 from jointbench.station.bench_view.level_meter import LevelMeter
 from jointbench.station.bench_view.live_view import LiveView
-from jointbench.station.bench_view.operator_keys import KEYS, OperatorKeys
+from jointbench.station.bench_view.operator_keys import (
+    KEYS,
+    RUN_KEYS,
+    OperatorKeys,
+)
 from jointbench.station.bench_view.session_screen import (
     Look,
     ViewContext,
@@ -102,10 +106,18 @@ class TerminalView:
             height=size.height,
             channel=self.keys.channel,
             prompt=self.keys.prompt,
-            keys=self._key_lines,
+            keys=self._usable_keys(),
         )
         lines = session_lines(self.state, around, look)
         self.live.update(Group(*lines), refresh=True)
+
+    def _usable_keys(self) -> tuple[str, ...]:
+        """Return the lines about the keys that do something now."""
+        if self._key_lines is not KEYS:
+            return self._key_lines
+        if self.state.begun is None:
+            return ()
+        return KEYS if self.state.begun.conditions else RUN_KEYS
 
     def _room(self) -> int | None:
         looked, free = self._free

@@ -206,6 +206,23 @@ def test_what_two_more_hits_buy_is_in_hertz_and_percent_until_the_next_hit() -> 
     assert not any("more hits" in line for line in lines(later))
 
 
+def test_before_the_first_event_nothing_is_said_of_hammer_hits_or_keys() -> None:
+    """It may be a machine that is recorded; its keys have no hits either."""
+    shown = "\n".join(lines(()))
+    assert "the device and the session file are opened" in shown
+    assert "hits left" not in shown
+    console = Console(file=io.StringIO(), force_terminal=True, width=80, height=24)
+    with Live(console=console, auto_refresh=False) as live:
+        view = TerminalView(live, lambda: "", Path("s.h5"))
+        runs = replace(BEGUN, conditions=[])
+        run = RunBegun("3000 rpm", "operating", "", None, duration=9.0)
+        view.follow((Stamped(0, 1.0, 0, runs), Stamped(1, 1.0, 0, run)))
+    output = console.file
+    assert isinstance(output, io.StringIO)
+    assert "n next run" in output.getvalue()
+    assert "r reject" not in output.getvalue()
+
+
 def test_points_are_listed_as_done_open_and_incomplete() -> None:
     """With the hits that are left and the time, after one of two hits at one point."""
     state = after(*STATES["good"])
