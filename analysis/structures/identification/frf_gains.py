@@ -38,6 +38,10 @@ class FrfGains:
             )
 
 
+EXACT = FrfGains()
+"""Gains and aims without error."""
+
+
 def without_gains(
     rows: FloatArray, slopes: FloatArray, frf: Frf, gains: FrfGains
 ) -> tuple[FloatArray, FloatArray]:

@@ -16,6 +16,7 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.analysis.structures.identification.frf_gains import (
+    EXACT,
     FrfGains,
     without_gains,
 )
@@ -60,7 +61,7 @@ class StructureEvidence:
     outputs: FloatArray
     inputs: FloatArray
     pairing: IntArray | None = None
-    gains: FrfGains = FrfGains()
+    gains: FrfGains = EXACT
 
     def __post_init__(self) -> None:
         """Check that there are measurements, with their uncertainty."""
