@@ -11,6 +11,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
+from jointbench.analysis.structures.identification.frf_gains import FrfGains
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
 )
@@ -139,7 +140,8 @@ def _evidence(
     inputs = readout(structure, reduced, named_sensors(frf.inputs, hits, "hits"))
     low, high = chain.result.band
     picked = _thinned(frf, low, high, settings.identify.lines)
-    return StructureEvidence(label, None, picked, outputs, inputs)
+    gains = FrfGains(settings.identify.gain_sd, settings.identify.force_sd)
+    return StructureEvidence(label, None, picked, outputs, inputs, gains=gains)
 
 
 def named_sensors(

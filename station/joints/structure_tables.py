@@ -107,6 +107,8 @@ class IdentifyTable(StrictTable):
     widen those of measured frequencies and damping ratios. `modulus_sd` makes the
     modulus of a body unknown, with this relative standard deviation around its table;
     `mass_sd` does the same for the mass of a sensor;
+    `gain_sd` is that of the gain of a sensor, `force_sd` that of the force at a point
+    (aim, direction), which FRFs have in common;
     `priors` hold stiffness and relative standard deviation of a joint's direction;
     `known` holds the stiffness of the directions that are not `sought`; `hypotheses`
     tries what else could explain the modes.
@@ -123,6 +125,8 @@ class IdentifyTable(StrictTable):
     lines: Annotated[int, Field(gt=3)] = 200
     frequency_sd: _Trust = 0.0
     damping_sd: _Trust = 0.0
+    gain_sd: _Trust = 0.0
+    force_sd: _Trust = 0.0
     modulus_sd: dict[str, _Share] = Field(default_factory=dict)
     mass_sd: dict[str, _Share] = Field(default_factory=dict)
     priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)

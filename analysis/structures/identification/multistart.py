@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.structures.identification.frf_gains import EXACT
 from jointbench.analysis.structures.identification.solution_branches import (
     admissible,
     followed,
@@ -49,6 +50,10 @@ def find_optima(
     """
     if problem.masses is not None:
         return _with_masses(problem, starts, seed)
+    plain = _with_exact_gains(problem)
+    if plain is not None:
+        ends = find_optima(plain, starts=starts, seed=seed)[:_MOST_ENDS]
+        return followed(problem, [descend(problem, one.unknowns) for one in ends])
     searched = [
         _search(part, starts, seed + at)
         for at, (part, _) in enumerate(states_apart(problem))
@@ -78,6 +83,17 @@ def _with_masses(
         for one in ends[:_MOST_ENDS]
     ]
     return followed(problem, found)
+
+
+def _with_exact_gains(problem: StiffnessProblem) -> StiffnessProblem | None:
+    """Return the problem with exact gains of FRFs; None where they are exact.
+
+    Far from its end, a fit that is free to scale FRFs stops at resonances of its own.
+    """
+    if all(one.gains == EXACT for one in problem.evidence):
+        return None
+    exact = tuple(replace(one, gains=EXACT) for one in problem.evidence)
+    return replace(problem, evidence=exact)
 
 
 def _without_masses(problem: StiffnessProblem) -> StiffnessProblem:

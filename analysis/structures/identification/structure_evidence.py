@@ -15,6 +15,11 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
+from jointbench.analysis.structures.identification.frf_gains import (
+    EXACT,
+    FrfGains,
+    without_gains,
+)
 from jointbench.analysis.structures.reduction.predict_modes import (
     JointValues,
     ModalState,
@@ -47,6 +52,7 @@ class StructureEvidence:
         inputs: rows of `readout` for the hit points of `frf`, shape (n_inputs, r).
         pairing: number of the elastic predicted mode of each measured one, from 0,
             shape (n_modes,); None pairs by MAC or by order.
+        gains: what is known of the scale of `frf`; exact by default.
     """
 
     label: str
@@ -55,6 +61,7 @@ class StructureEvidence:
     outputs: FloatArray
     inputs: FloatArray
     pairing: IntArray | None = None
+    gains: FrfGains = EXACT
 
     def __post_init__(self) -> None:
         """Check that there are measurements, with their uncertainty."""
@@ -311,9 +318,11 @@ def _frf_rows(
     by_c = (found.by_damping * weight).reshape(shape).T * values.damping
     slope = np.hstack([by_k, by_c])
     flat = left.ravel()
-    return (
+    return without_gains(
         np.concatenate([flat.real, flat.imag]),
         np.concatenate([slope.real, slope.imag]),
+        frf,
+        evidence.gains,
     )
 
 
