@@ -29,7 +29,7 @@ class Asset:
 
 
 def screen_assets() -> tuple[Asset, ...]:
-    """Return the files that a browser may ask for; the palette is that of all screens."""
+    """Return the files that a browser may ask for, palette included."""
     palette = files("jointbench.station.screen").joinpath("palette.css")
     room = files("jointbench.station.browser").joinpath("assets")
     return (Asset(palette.name, _TYPES["css"], palette.read_bytes()), *_below(room, ""))
