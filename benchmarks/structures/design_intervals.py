@@ -4,7 +4,7 @@ Each session is the plan that `design` chooses for the shipped bolted plates, wi
 own noise and, in the second case, its own gains of sensors and aims of hits. The FRFs
 are those of the model with the noise of each line; the joints are fitted to them.
 
-python benchmarks/structures/design_intervals.py [--sessions 50] [--seed 1] [--exact]
+python benchmarks/structures/design_intervals.py [--sessions 50] [--seed 1]
     [--page docs/joint-design-numbers.md]
 """
 
@@ -138,14 +138,13 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--sessions", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--exact", action="store_true", help="exact gains as well")
     parser.add_argument("--page", type=Path)
     options = parser.parse_args()
     own = bench()
     pairs = pair_information(own.model, own.values, own.test, own.rows, own.rows)
     open_ = np.full(2 * len(own.model.names), np.inf)
     table, rows = own.table, []
-    for gain in (table.gain_sd, NONE) if options.exact else (table.gain_sd,):
+    for gain in (table.gain_sd, NONE):
         prior = PlanPrior(open_, gain, gain)
         request = PlanRequest(
             pairs, prior, np.arange(open_.size), Criterion.D, float(table.repeats)
@@ -175,15 +174,14 @@ HEAD = """# Expected and obtained intervals: numbers
 Made by `benchmarks/structures/design_intervals.py --sessions {sessions} --seed {seed}`
 for [joint-design.md](joint-design.md): the plan that `design` chooses for
 `examples/bolted-plates.toml`, {sessions} simulated sessions with their own noise, and
-gains of sensors and aims of hits that are off by 2 % each.
+gains of sensors and aims of hits that are off by 2 % each, or exact.
 
 **Expected** is the standard deviation before the first hit; **stated** the median of
 those that the fit to the FRFs states, enlarged where chi2 shows it; **ratio** the
 median of expected over stated; **error** the rms error over the expected one. The fit
 knows gains and aims as the expectation does: `identify.gain_sd` and
 `identify.force_sd`. Without them their errors are taken for noise: the stated
-deviations are then 50 times the expected ones, and the errors 70 to 1200 times. With
-gains that are exact (`--exact`, 6 sessions) the ratio is 1.00.
+deviations are then 50 times the expected ones, and the errors 70 to 1200 times.
 
 The noise is 1e-6 of the FRFs here, so that products of two gains, which the linear
 elimination leaves out, count: they widen the stated deviations by a tenth, and errors
