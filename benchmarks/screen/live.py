@@ -43,7 +43,7 @@ FLAGS = (
     "--no-sandbox --disable-gpu --disable-quic --no-first-run "
     "--disable-background-networking --disable-component-update --disable-sync"
 ).split()
-DRAWS = "Number(document.querySelector('canvas[data-draws]').dataset.draws)"
+DRAWS = "document.querySelector('canvas.scope').draws"
 WATCH = """() => {
   window.seen = [];
   const at = document.getElementById("verdict");
@@ -231,7 +231,8 @@ Written by `python benchmarks/screen/live.py`. `jointbench bench`, simulated cha
 |---|---|---|---|---|
 {rows}
 
-A page draws when new bins arrive, at most 20 times a second here (one block, one set of bins). The frozen page runs an endless loop; it hinders neither server nor recorder. A page draws less often where other work takes the cores, as in this run: the sets that it has not drawn are drawn with the next one.
+A page plays the signals out evenly, 25 times a second and some 70 ms late, so that blocks that come with jitter are not seen; a draw is counted where it shows bins that the one before did not. The frozen page runs an endless loop; it hinders neither server nor recorder.
+The counts of the bar are those of a quiet machine: `python benchmarks/screen/live.py --seconds 60 --hits 100` takes some six minutes and writes this page.
 
 ## Delay of a verdict
 From the last sample of the record of a hit to the verdict on the page, {len(waited)} hits: median {statistics.median(waited):.2f} s, 90 % below {waited[int(0.9 * len(waited))]:.2f} s, largest {waited[-1]:.2f} s. It includes a block of {1000 * BLOCK:g} ms that a sample waits for at most.

@@ -17,6 +17,7 @@ let state = null;
 let channel = 0;
 let struck = -1;
 let judged = "";
+let averaged = "none";
 
 const warnings = el("section", { "aria-label": "Warnings", "aria-live": "assertive" });
 const letters = el("p", { class: "letters", id: "task" });
@@ -66,7 +67,10 @@ function show(fresh) {
   showBought();
   showChannels();
   pointTable(points, state);
-  plots.average(state, channelName());
+  // A state comes every second, for its clocks; curves change with an event or another channel.
+  const curves = `${state.last} ${channelName()}`;
+  if (curves !== averaged) plots.average(state, channelName());
+  averaged = curves;
 }
 
 function showTask() {

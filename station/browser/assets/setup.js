@@ -43,7 +43,7 @@ answersIn(answer);
 settings.build((name, value) => void command({ command: "set", name, value }));
 const scope = followSession(show);
 scope.drawIn(scopeBox);
-scope.listeners.push(showLevels);
+scope.listeners.push((words) => { if (words) showLevels(); });
 void json("/bench/geometry").then((geometry) => places.know(geometry)).catch(() => undefined);
 
 /** @param {any} fresh */
@@ -94,7 +94,7 @@ function showLevels() {
   [...rows.children].forEach((row, i) => {
     const level = scope.level(i);
     const name = state.channels[i].name;
-    row.querySelector("meter")?.setAttribute("value", String(Math.min(1, level.share)));
+    row.querySelector("meter")?.setAttribute("value", Math.min(1, level.share).toFixed(3));
     const cell = /** @type {HTMLElement} */ (row.querySelector(".state"));
     const loose = open.split(/[,;]\s*/).includes(name);
     say(cell, loose ? "OPEN CABLE" : level.full ? "OVERLOAD" : level.share < 1e-3 ? "< 0.1 %" : `${shown(100 * level.share, 2)} %`);
