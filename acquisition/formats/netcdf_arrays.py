@@ -5,6 +5,7 @@ Files of netCDF-4 are HDF5: the guards look at all of it before a value is read.
 of netCDF-3 are read by SciPy, after their size is checked.
 """
 
+import math
 import re
 import struct
 from collections.abc import Mapping
@@ -30,6 +31,7 @@ _MOST_BYTES = 2**30
 _LONGEST_TEXT = 1000
 _NEEDED = 4.0
 _LIMITS = FileLimits(variable_texts=_MOST_TEXTS, complex_pairs=True)
+_PACKING = ("scale_factor", "add_offset", "_FillValue", "missing_value")
 _POWER = re.compile(r"(?<![A-Za-z])([A-Za-z]+)\^?(-?\d)(?!\d)")
 _WORDS = {
     "seconds": "s",
@@ -75,9 +77,11 @@ def read_labelled_arrays(path: Path) -> dict[str, LabelledArray]:
         with open_guarded(path, limits=_LIMITS) as file:
             for name, item in file.items():
                 if isinstance(item, h5py.Dataset) and not _is_bare(item):
+                    values = _values(path, name, item)
+                    # Texts as tables of letters have an axis more than texts.
                     found[name] = LabelledArray(
-                        tuple(_axes(item, name)),
-                        _values(path, name, item),
+                        tuple(_axes(item, name))[: values.ndim],
+                        values,
                         plain_unit(_attribute(item, "units")),
                         _attribute(item, "long_name")
                         or _attribute(item, "standard_name"),
@@ -136,7 +140,9 @@ def _values(path: Path, name: str, item: h5py.Dataset) -> NDArray[Any]:
         if values.dtype.names is not None:
             real, imaginary = values.dtype.names
             values = values[real] + 1j * values[imaginary]
-        return np.asarray(values)
+        return _unpacked(np.asarray(values), item.attrs)
+    if item.dtype == np.dtype("S1") and item.ndim > 1:
+        return _joined(path, name, item)
     if item.size is None or item.size > _MOST_TEXTS or item.ndim > 1:
         raise HostileFile(
             f"{named(path)}: {shown(name)} holds {item.size} texts in {item.ndim} "
@@ -150,6 +156,46 @@ def _values(path: Path, name: str, item: h5py.Dataset) -> NDArray[Any]:
             raise HostileFile(f"{named(path)}: {shown(name)} holds {len(text)} signs")
         texts.append(text.strip("\0 "))
     return np.array(texts, dtype=str).reshape(item.shape)
+
+
+def _joined(path: Path, name: str, item: h5py.Dataset) -> NDArray[Any]:
+    """Return the texts of a table of characters, whose last axis runs along them."""
+    count = math.prod(item.shape[:-1])
+    if count > _MOST_TEXTS or item.shape[-1] > _LONGEST_TEXT:
+        raise HostileFile(
+            f"{named(path)}: {shown(name)} holds {count} texts of {item.shape[-1]} "
+            f"letters; at most {_MOST_TEXTS} of {_LONGEST_TEXT} are read"
+        )
+    return _texts(item[()])
+
+
+def _texts(letters: NDArray[Any]) -> NDArray[Any]:
+    """Join letters along the last axis."""
+    rows = letters.reshape(math.prod(letters.shape[:-1]), letters.shape[-1])
+    texts = [b"".join(row).decode("utf-8", "replace").strip("\0 ") for row in rows]
+    return np.array(texts, dtype=str).reshape(letters.shape[:-1])
+
+
+def _unpacked(values: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[Any]:
+    """Return the numbers that packed ones stand for; missing ones are NaN.
+
+    Source:
+        CF conventions 1.11, sections 2.5.1 and 8.1.
+    """
+    if values.dtype.kind not in "fiu":
+        return values
+    scale, offset = (attributes.get(n) for n in ("scale_factor", "add_offset"))
+    gaps = [
+        values == np.asarray(attributes[name]).ravel()[0]
+        for name in ("_FillValue", "missing_value")
+        if name in attributes
+    ]
+    missing = np.logical_or.reduce(gaps) if gaps else np.zeros(1, dtype=bool)
+    if scale is not None or offset is not None or missing.any():
+        values = values.astype(np.float64)
+        values = values * (1.0 if scale is None else float(np.ravel(scale)[0]))
+        values = values + (0.0 if offset is None else float(np.ravel(offset)[0]))
+    return np.where(missing, np.nan, values) if missing.any() else values
 
 
 def _attribute(item: h5py.Dataset, name: str) -> str:
@@ -186,13 +232,13 @@ def _classic(path: Path) -> dict[str, LabelledArray]:
 def _classic_array(variable: Any) -> LabelledArray:
     values = np.array(variable[...] if variable.shape else variable.getValue())
     dims = tuple(variable.dimensions)
-    if values.dtype.kind == "S":  # the last axis runs along the letters
-        rows = values.reshape(-1, values.shape[-1]) if values.ndim else values
-        texts = [b"".join(row).decode("utf-8", "replace") for row in rows]
-        values = np.array([t.strip("\0 ") for t in texts]).reshape(values.shape[:-1])
+    if values.dtype.kind == "S":
+        values = _texts(np.atleast_1d(values))
         dims = dims[:-1]
     else:
         values = values.astype(values.dtype.newbyteorder("="))
+        stated = {n: getattr(variable, n) for n in _PACKING if hasattr(variable, n)}
+        values = _unpacked(values, stated)
     words = {name: getattr(variable, name, b"") for name in ("units", "long_name")}
     plain = {
         name: value.decode("utf-8", "replace") if isinstance(value, bytes) else ""

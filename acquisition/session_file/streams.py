@@ -14,7 +14,8 @@ The time axis is a plain coordinate for readers, but stored as integers with
 a ramp of doubles to a third of the size of the samples. The sample rate is read from
 the attribute `sample_rate`. Samples are doubles, or single precision if that is
 lossless. The attribute `units` of the samples is their unit, or one unit a channel
-separated by commas (docs/decisions/0314-units-and-names-of-channels.md).
+separated by commas (docs/decisions/0314-units-and-names-of-channels.md);
+`export --to netcdf` writes a variable a channel.
 """
 
 from collections.abc import Callable, Iterable, Sequence

@@ -29,7 +29,7 @@ SYSTEMS = {
 PYTHONS = ("3.11", "3.12", "3.13")
 PRODUCT = (
     *("archive", "cluster", "tdms", "mesh", "meshes", "pardiso", "surfaces"),
-    *("readers", "site", "xarray"),
+    *("readers", "screen", "site", "xarray"),
 )
 """Extras of the product; the others are for its developers."""
 BEGIN, END = "<!-- wheels -->\n", "<!-- end of wheels -->\n"

@@ -1,36 +1,37 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench export``: sessions and results as CSV, MAT or universal files.
+"""``jointbench export``: sessions and results as CSV, MAT, netCDF or universal files.
 
 Universal files of other programs are exported as tables as well, since a session
 cannot hold FRFs and mode shapes.
 
 A session gives samples and surfaces. Results give FRFs, modes, mode shapes, structure
 functions and quantities, and the results of contact, joint and gap as JSON. Units are
-in the column heads, in variables called ``*_unit``, or in fields of the format.
+in the column heads, in variables called ``*_unit``, in attributes, or in fields of the
+format.
 """
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.basics.units import example_unit
 from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.formats.samples.universal import SUFFIXES
-from jointbench.acquisition.records.recordings import Recording
-from jointbench.acquisition.records.session import Session
-from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.session_file.open_session import open_session
+from jointbench.station.files.netcdf_tables import one_unit_each, write_netcdf
 from jointbench.station.files.output_paths import (
     check_outputs,
     make_folder,
     require_mark,
     write_text,
 )
+from jointbench.station.files.session_tables import (
+    labelled_tables,
+    session_attributes,
+    session_tables,
+)
 from jointbench.station.files.table_files import (
-    ExportColumn,
     ExportTable,
     plain_name,
     write_csv,
@@ -40,6 +41,7 @@ from jointbench.station.files.universal_frf import write_universal
 from jointbench.station.files.universal_samples import write_universal_samples
 from jointbench.station.files.universal_tables import universal_tables
 from jointbench.station.results.result_tables import (
+    FACTS,
     result_modes,
     result_tables,
     result_texts,
@@ -47,7 +49,7 @@ from jointbench.station.results.result_tables import (
 from jointbench.station.results.results_read import is_results
 from jointbench.station.screen.terminal import console, write_json
 
-KINDS = ("csv", "mat", "uff")
+KINDS = ("csv", "mat", "netcdf", "uff")
 UNIVERSAL_MARK = b"jointbench"
 """Text in the first lines of a universal file that jointbench wrote."""
 
@@ -59,7 +61,7 @@ def run_export(
 
     Args:
         file: session or results, or a universal file of another program.
-        kind: ``csv``, ``mat`` or ``uff``.
+        kind: ``csv``, ``mat``, ``netcdf`` or ``uff``.
         folder: to write to; next to the file by default.
         json_target: where the JSON goes.
 
@@ -87,16 +89,18 @@ def run_export(
 def _writer(file: Path, kind: str) -> Callable[[Path, Path], Iterator[Path]]:
     """Return the function that writes this sort of file in the format."""
     if file.suffix.lower() in SUFFIXES:
-        if kind == "uff":
-            raise UsageError(
-                f"'{file}' is a universal file already; use --to csv or --to mat"
-            )
+        if kind in {"uff", "netcdf"}:
+            raise UsageError(f"'{file}' is a universal file; use --to csv or --to mat")
         return lambda path, target: _write_tables(universal_tables(path), target, kind)
+    if kind == "netcdf":
+        return _netcdf_results if is_results(file) else _netcdf_session
     if is_results(file):
         return _universal_results if kind == "uff" else partial(_write_results, kind)
     if kind == "uff":
         return _universal_session
-    return lambda path, target: _write_tables(_tables(open_session(path)), target, kind)
+    return lambda path, target: _write_tables(
+        session_tables(open_session(path)), target, kind
+    )
 
 
 def _write_tables(
@@ -116,6 +120,35 @@ def _write_results(kind: str, file: Path, target: Path) -> Iterator[Path]:
         path = target.with_name(f"{target.name}.{plain_name(name)}.json")
         write_text(path, f"{text}\n")
         yield path
+
+
+def _netcdf_session(file: Path, target: Path) -> Iterator[Path]:
+    """Write one flat file for each recording and surface."""
+    session = open_session(file)
+    facts = session_attributes(session)
+    begun = f"{session.created} session {file.name} by {session.software}"
+    for table, steps in labelled_tables(session):
+        yield write_netcdf(target, table, facts, [begun, *map(_history_line, steps)])
+
+
+def _history_line(step: Step) -> str:
+    """Return a step as a line of the history."""
+    detail = ", ".join(f"{name}={value}" for name, value in step.detail)
+    return f"{step.name} {detail}".rstrip()
+
+
+def _netcdf_results(file: Path, target: Path) -> Iterator[Path]:
+    """Write one flat file for each group, a variable for each quantity."""
+    facts, *tables = result_tables(file)
+    stated = list(zip(*(facts.columns[n].values for n in FACTS), strict=True))
+    whole = {str(name): str(value) for of, name, value in stated if not of}
+    begun = f"{whole.pop('created', '')} {file.name} by {whole.pop('software', '')}"
+    for name in ("Conventions", "title", "schema"):
+        whole.pop(name, None)
+    for table in tables:
+        own = {str(n): str(value) for of, n, value in stated if of == table.name}
+        flat = one_unit_each(table) if table.name == "quantities" else table
+        yield write_netcdf(target, flat, whole | own, [begun.strip()])
 
 
 def _universal_session(file: Path, target: Path) -> Iterator[Path]:
@@ -143,35 +176,3 @@ def _universal_results(file: Path, target: Path) -> Iterator[Path]:
         require_mark(path, UNIVERSAL_MARK, "export")
         write_universal(path, frf, modes)
         yield path
-
-
-def _tables(session: Session) -> Iterator[ExportTable]:
-    for recording in session.recordings:
-        yield ExportTable(recording.name, _samples(recording))
-    for surface in session.surfaces:
-        yield ExportTable(surface.name, _heights(surface))
-
-
-def _samples(recording: Recording) -> dict[str, ExportColumn]:
-    count, along = recording.samples.shape[1], ("time",)
-    time = recording.start_time + np.arange(count) / recording.sample_rate
-    rows = {
-        channel.name: ExportColumn(example_unit(channel.quantity.value), row, along)
-        for channel, row in zip(recording.channels, recording.samples, strict=True)
-    }
-    return {"time": ExportColumn("s", time, along)} | rows
-
-
-def _heights(surface: Surface) -> dict[str, ExportColumn]:
-    heights = np.where(surface.valid, surface.heights, np.nan)
-    steps = np.atleast_1d(surface.spacing)
-    axes = np.meshgrid(
-        *(np.arange(n) * d for n, d in zip(heights.shape, steps, strict=True)),
-        indexing="ij",
-    )
-    names = ("y", "x")[-heights.ndim :]
-    columns = dict(zip(names, axes, strict=True)) | {"z": heights}
-    return {
-        n: ExportColumn("m", values.ravel(), ("point",))
-        for n, values in columns.items()
-    }

@@ -134,7 +134,9 @@ def export_command(
         Path,
         typer.Argument(metavar="FILE", help="Session, results or universal file."),
     ],
-    to: Annotated[str, typer.Option(metavar="csv|mat|uff", help="Format.")] = "csv",
+    to: Annotated[
+        str, typer.Option(metavar="csv|mat|netcdf|uff", help="Format.")
+    ] = "csv",
     out: Annotated[
         Path | None,
         typer.Option(
@@ -149,6 +151,7 @@ def export_command(
     Examples:
         jointbench export session.results.h5 --to mat
         jointbench export session.h5 --to uff --out exported/
+        jointbench export session.h5 --to netcdf --out exported/
     """
     from jointbench.station.commands.export_command import run_export
 

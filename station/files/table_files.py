@@ -34,11 +34,13 @@ class ExportColumn:
         unit: of the numbers; empty for texts.
         values: of any shape.
         dims: name of each axis.
+        words: what it is; empty where its name is enough.
     """
 
     unit: str
     values: Array
     dims: tuple[str, ...]
+    words: str = ""
 
     @property
     def along(self) -> str:

@@ -27,6 +27,8 @@ from jointbench.station.results.results_read import open_result
 
 JSON_GROUPS = ("recipe", "pages/contact", "pages/joint", "pages/gap")
 """Groups that hold JSON, which goes out as it is."""
+FACTS = ("of", "name", "value")
+"""Columns of the table of facts: name of the group, of the attribute, and value."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +131,7 @@ def _facts(groups: list[h5py.Group]) -> ExportTable:
         for name in group.attrs
         if (value := read_attribute(group, name)) is not None
     ]
-    columns = zip(("of", "name", "value"), zip(*rows, strict=True), strict=True)
+    columns = zip(FACTS, zip(*rows, strict=True), strict=True)
     return ExportTable(
         "facts",
         {

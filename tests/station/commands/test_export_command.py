@@ -178,7 +178,7 @@ def test_another_format_and_another_file_are_refused(
 ) -> None:
     """One states what exists, the other the kind of file."""
     path = make_session("s.h5")
-    with pytest.raises(UsageError, match="csv, mat, uff"):
+    with pytest.raises(UsageError, match="csv, mat, netcdf, uff"):
         run_export(path, kind="xlsx", folder=None, json_target=None)
     other = tmp_path / "notes.results.h5"
     other.write_text("notes", encoding="utf-8")

@@ -223,3 +223,27 @@ def test_a_pickle_is_never_opened(tmp_path: Path) -> None:
     path.write_bytes(pickle.dumps({"NI": {"time": TIME}}, protocol=-1))
     with pytest.raises(FormatError, match=r"LDAQ\.load_measurement.*numpy\.savez"):
         read_samples(path, SampleOptions())
+
+
+@pytest.mark.parametrize("engine", ["h5netcdf", "scipy"])
+def test_packed_arrays_and_names_as_letters_are_read_as_xarray_reads_them(
+    tmp_path: Path, engine: str
+) -> None:
+    """Whole numbers with a scale and an offset, names of channels as characters."""
+    path = tmp_path / "packed.nc"
+    data = xarray.Dataset(
+        {
+            "f": (("hit", "time"), HITS[:, 0], {"units": "N"}),
+            "a": (("hit", "time"), HITS[:, 1], {"units": "m s-2"}),
+            "operator": (("hit",), np.array(["Ada", "Kurt", "Ada"], dtype="S")),
+        },
+        {"time": (("time",), TIME, {"units": "s"})},
+    )
+    packed = {"dtype": "int32", "scale_factor": 1e-3, "add_offset": 4.0}
+    packed["_FillValue"] = -(2**31)
+    data.to_netcdf(path, engine=engine, encoding={"f": packed, "a": packed})
+    found = read_samples(path, SampleOptions(None))
+    with xarray.open_dataset(path, engine=engine) as own:
+        for number, one in enumerate(found):
+            for channel, row in zip(one.channels, one.samples, strict=True):
+                assert np.allclose(row, own[channel.name].values[number], rtol=1e-12)
