@@ -133,6 +133,33 @@ def heavy(rng: Rng) -> Case:
     return Case(one, strike(one, strikes, _bench(rng), rng))
 
 
+def close(rng: Rng) -> Case:
+    """4 to 7 places with one, two or three modes in 0.001 to 0.3 of their width.
+
+    Twelve hit points and two accelerometers: of three modes at one frequency these
+    show two.
+    """
+    place, ratio = _spread(rng, int(rng.integers(4, 8)), 0.004, 0.02)
+    count = rng.integers(1, 4, place.size)
+    each, damped = np.repeat(place, count), np.repeat(ratio, count)
+    near = np.repeat(10.0 ** rng.uniform(-3.0, -0.5, place.size), count)
+    apart = 2.0 * damped * each * near * rng.uniform(size=each.size)
+    damped = damped * np.exp(near * rng.normal(0.0, 0.3, each.size))
+    order = np.argsort(each + apart)
+    one = prescribed((each + apart)[order], damped[order], 14, rng)
+    return Case(one, strike(one, _roving((12, 13), range(12)), _bench(rng), rng))
+
+
+def apart(rng: Rng) -> Case:
+    """5 to 9 modes at least 15 Hz apart, five widths or more, before two references."""
+    count = int(rng.integers(5, 10))
+    room = (460.0 - 25.0) / count
+    place = 25.0 + room * np.arange(count) + rng.uniform(0.0, room - 15.0, count)
+    ratio = np.exp(rng.uniform(np.log(0.002), np.log(0.004), count))
+    one = prescribed(place, ratio, 14, rng)
+    return Case(one, strike(one, _roving((12, 13), range(12)), _bench(rng), rng))
+
+
 KINDS: dict[str, Callable[[Rng], Case]] = {
     "roving": roving,
     "mixed": mixed,
@@ -142,6 +169,8 @@ KINDS: dict[str, Callable[[Rng], Case]] = {
     "dense_single": dense_single,
     "single": single,
     "heavy": heavy,
+    "close": close,
+    "apart": apart,
 }
 
 

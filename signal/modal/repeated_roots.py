@@ -23,7 +23,7 @@ from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines
 from jointbench.signal.modal.modal_model import ModalModel, split_residues
 from jointbench.signal.modal.mode_selection import FittedModes
-from jointbench.signal.modal.rank_one_fit import covariance
+from jointbench.signal.modal.residual_search.rank_one_fit import covariance
 from jointbench.signal.modal.residual_search.second_modes import (
     FrfSides,
     SecondModes,

@@ -14,12 +14,12 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.lsfd import LinearFit
-from jointbench.signal.modal.rank_one_fit import (
-    PeakLines,
+from jointbench.signal.modal.refined_pole_covariance import RefinedPoles
+from jointbench.signal.modal.residual_search.peak_sums import PeakLines
+from jointbench.signal.modal.residual_search.rank_one_fit import (
     RankOneModes,
     fit_rank_one,
 )
-from jointbench.signal.modal.refined_pole_covariance import RefinedPoles
 
 # Lines around a mode: half-power half-widths, and lines at least, each side.
 _REACH_WIDTHS, _REACH_LINES = 6.0, 12

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Modes of rank one fitted to the lines around a peak."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import ComplexArray
-from jointbench.signal.modal import rank_one_fit
-from jointbench.signal.modal.rank_one_fit import PeakLines, fit_rank_one
+from jointbench.signal.modal.residual_search import rank_one_fit
+from jointbench.signal.modal.residual_search.peak_sums import PeakLines, sums_of_slopes
+from jointbench.signal.modal.residual_search.rank_one_fit import fit_rank_one
 
 POLES: ComplexArray = np.array([-3.0 + 625.0j, -4.0 + 630.0j])
 REFERENCES = np.array([[1.0, 0.4 - 0.2j, 0.3], [-0.5, 1.0, 0.2 + 0.1j]], np.complex128)
@@ -47,15 +50,30 @@ def test_two_modes_at_one_peak_come_out_at_the_noise(peak: PeakLines) -> None:
     assert found.pole == pytest.approx(POLES, abs=0.1)
 
 
-def test_sums_over_parts_of_the_rows_end_at_the_same_optimum(
+def test_sums_in_place_of_slopes_end_at_the_same_optimum(
     peak: PeakLines, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Limits as of a large measurement: two rows at a time, no matrix of slopes."""
+    """A limit as of a large measurement: no matrix of slopes."""
     start = POLES + np.array([2.0j, -2.0j])
     whole = fit_rank_one(peak, start, REFERENCES)
     monkeypatch.setattr(rank_one_fit, "_MOST_VALUES", 0)
-    monkeypatch.setattr(rank_one_fit, "_PART_VALUES", 2 * 2 * 3 * 60 * 12)
     found = fit_rank_one(peak, start, REFERENCES)
     assert found.cost == pytest.approx(whole.cost, rel=1e-6)
     assert found.pole == pytest.approx(whole.pole, abs=1e-3)
     assert found.shape == pytest.approx(whole.shape, rel=1e-3, abs=1e-6)
+
+
+def test_the_gradient_is_that_of_the_sum_of_squares(peak: PeakLines) -> None:
+    """By differences over the poles, noise different from line to line."""
+    rng = np.random.default_rng(2)
+    uneven = replace(peak, sd=peak.sd * rng.uniform(0.5, 2.0, peak.sd.shape))
+    start, pivot = POLES + 2.0 * STEP, np.argmax(np.abs(REFERENCES), axis=1)
+    gradient = sums_of_slopes(uneven, start, REFERENCES, pivot)[1]
+    for number, way in enumerate(([1, 0], [1j, 0], [0, 1], [0, 1j])):
+        step = 1e-4 * peak.width * np.array(way)
+        ends = [
+            sums_of_slopes(uneven, start + sign * step, REFERENCES, pivot)[2]
+            for sign in (-1, 1)
+        ]
+        slope = (ends[1] - ends[0]) / 2e-4
+        assert 2.0 * gradient[number] == pytest.approx(slope, rel=1e-4)

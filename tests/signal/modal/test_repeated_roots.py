@@ -111,3 +111,29 @@ def test_a_weak_second_mode_is_reported_or_remarked_on() -> None:
         result = identify_modes(pair_of(second), SETTINGS)
         found = result.model.natural_frequency.size
         assert found == 2 or any("100" in words for words in result.remarks)
+
+
+@pytest.mark.parametrize("third", [0.0, 0.7])
+def test_a_pair_before_two_references_leaves_room_for_a_third(third: float) -> None:
+    """Its rank is used up, whether a third mode is at that frequency or not."""
+    rng = np.random.default_rng(6)
+    shapes = rng.normal(size=(3, 6))
+    references = np.array([(1.0, 0.4), (-0.4, 1.0), (0.7, -0.7)])
+    size = np.array([1.0, 0.8, third])
+    residue = np.einsum("m,mo,mi->oi", size, shapes, references)
+    s = 2j * np.pi * LINES
+    own = 1.0 / (s - POLE) - 1.0 / (s - POLE.conjugate())
+    exact = residue[:, :, None] * own * s**2 / 2j
+    error = rng.normal(size=(2, *exact.shape))
+    noisy = exact + 1e-3 * np.abs(exact).max() * (error[0] + 1j * error[1])
+    result = identify_modes(Frf(LINES, noisy, FrfKind.ACCELERANCE), SETTINGS)
+    assert result.model.natural_frequency == pytest.approx([100.0, 100.0], rel=1e-3)
+    used = [one for one in result.remarks if "as many as 2 references" in one]
+    assert len(used) == 1 and used[0].startswith("modes 1, 2 at ")
+
+
+def test_one_mode_before_two_references_is_not_remarked_on() -> None:
+    """A single mode leaves a column of the residue free for a second one."""
+    result = identify_modes(pair_of(0.0), SETTINGS)
+    assert result.model.natural_frequency.size == 1
+    assert not result.remarks

@@ -6,8 +6,7 @@ that as a constraint two modes at one frequency are two, where residues fitted p
 pair leave one pole with a residue of rank two.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -15,35 +14,16 @@ from scipy.optimize import least_squares
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.normal_equations import inverses
+from jointbench.signal.modal.residual_search.peak_sums import PeakLines, sums_of_slopes
 
 _EVALUATIONS = 100
 # Step of numerical slopes, as a share of each parameter's scale.
 _SLOPE_STEP = 1e-5
 _RIDGE = 1e-12
-# Values of a matrix of slopes above which its normal equations take its place, and
-# values of a part of it (0.1 GB).
-_MOST_VALUES, _PART_VALUES = 20_000_000, 10_000_000
+# Values of a matrix of slopes above which its normal equations take its place.
+_MOST_VALUES = 20_000_000
 # Damping of a step, first and last; relative fall of chi-squared that ends a search.
 _DAMPED, _STUCK, _SETTLED = 1e-3, 1e8, 1e-8
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PeakLines:
-    """The lines around a peak, without the modes that stand apart from it.
-
-    Attributes:
-        laplace: s of each line [rad/s], shape (n_lines,).
-        response: shape (n_rows, n_references, n_lines).
-        sd: standard deviation of the error of real and of imaginary part, same shape.
-        derivatives: of the FRF's kind.
-        width: half the half-power width of the mode that is examined [rad/s].
-    """
-
-    laplace: ComplexArray
-    response: ComplexArray
-    sd: FloatArray
-    derivatives: int
-    width: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +67,7 @@ def fit_rank_one(
         return _slopes(peak, *_unpacked(peak, values, pivot), pivot)
 
     if 2 * peak.response.size * start.size > _MOST_VALUES:
-        values, cost = _by_parts(peak, start, pivot)
+        values, cost = _by_sums(peak, start, pivot)
     else:
         found = least_squares(left, start, slopes, method="lm", max_nfev=_EVALUATIONS)
         values, cost = found.x, 2.0 * float(found.cost)
@@ -96,23 +76,23 @@ def fit_rank_one(
     return RankOneModes(poles, shape, references, cost, values)
 
 
-def _by_parts(
+def _by_sums(
     peak: PeakLines, start: FloatArray, pivot: np.ndarray
 ) -> tuple[FloatArray, float]:
-    """Search as Levenberg and Marquardt do, with sums over a few rows at a time.
+    """Search as Levenberg and Marquardt do, from sums alone.
 
     200 rows, 8 references and 2000 lines with 32 parameters are 1.6 GB of slopes, and
     MINPACK's factors of them take minutes; their sums take neither.
     """
     values, damped = start, _DAMPED
-    gram, gradient, cost = _sums(peak, values, pivot)
+    gram, gradient, cost = sums_of_slopes(peak, *_unpacked(peak, values, pivot), pivot)
     for _ in range(_EVALUATIONS):
         scale = np.diag(gram)
         # A parameter that changes nothing stays where it is.
         scale = np.where(scale > 0.0, scale, scale.max())
         matrix = gram + damped * np.diag(scale)
         moved = values - scipy.linalg.solve(matrix, gradient, assume_a="pos")
-        further = _sums(peak, moved, pivot)
+        further = sums_of_slopes(peak, *_unpacked(peak, moved, pivot), pivot)
         fall = cost - further[2]
         if fall > 0.0:
             values, damped = moved, 0.1 * damped
@@ -124,30 +104,6 @@ def _by_parts(
             if damped > _STUCK:
                 break
     return values, cost
-
-
-def _sums(
-    peak: PeakLines, values: FloatArray, pivot: np.ndarray
-) -> tuple[FloatArray, FloatArray, float]:
-    """Return J'J, J'r and r'r of the whitened residual r and its slopes J."""
-    gram, gradient = np.zeros((values.size, values.size)), np.zeros(values.size)
-    cost, place = 0.0, _unpacked(peak, values, pivot)
-    for part in _parts(peak, values.size):
-        left = _projected(part, *place)[1]
-        slopes = _slopes(part, *place, pivot)
-        gram += slopes.T @ slopes
-        gradient += slopes.T @ left
-        cost += float(left @ left)
-    return gram, gradient, cost
-
-
-def _parts(peak: PeakLines, n_parameters: int) -> Iterator[PeakLines]:
-    """Yield the lines of a few rows at a time; a row's shape is its own."""
-    a_row = 2 * peak.response[0].size * n_parameters
-    size = max(1, _PART_VALUES // a_row)
-    for first in range(0, peak.response.shape[0], size):
-        rows = slice(first, first + size)
-        yield replace(peak, response=peak.response[rows], sd=peak.sd[rows])
 
 
 def _packed(
