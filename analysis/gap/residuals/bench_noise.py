@@ -11,8 +11,13 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
+from jointbench.analysis.gap.residuals.converter_gains import (
+    clips,
+    gain_columns,
+    gains_of,
+)
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
-from jointbench.analysis.gap.residuals.fit_records import Settled
+from jointbench.analysis.gap.residuals.fit_records import HitGains, Settled
 from jointbench.analysis.gap.residuals.hit_scatter import (
     HitsSeen,
     estimate_scatter,
@@ -45,7 +50,12 @@ from jointbench.analysis.gap.residuals.scatter_likelihood import (
     CompressedRecords,
     compress,
 )
-from jointbench.analysis.gap.residuals.scatter_record import HitScatter, no_scatter
+from jointbench.analysis.gap.residuals.scatter_record import (
+    CHANNEL_GAIN,
+    HitScatter,
+    ScatterDirection,
+    no_scatter,
+)
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.gap.response.excitation import prepare_excitation
 from jointbench.analysis.gap.response.predict_records import respond
@@ -66,6 +76,43 @@ def refine_noise(
         terms: of the solution.
         without: records that are held out of the estimate.
     """
+    if not clips(bench, terms):
+        return _refined(replace(bench, gains=None, short={}), base, terms, without)
+    # Gains estimated beside wrong gains are wrong to second order.
+    for _ in range(RESIDUALS.gain_rounds):
+        bench = _at_gains(_refined(bench, base, terms, without), base, terms)
+    return bench
+
+
+def _at_gains(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeBench:
+    """Return the bench expanded about the gains of its hits, if that fits better."""
+    scatter = bench.noise.scatter
+    if not np.any(scatter.sd[:, list(gain_columns(scatter))] > 0.0):
+        return bench
+    ahead = [
+        t
+        for t, a in zip(terms, bench.actions(terms), strict=True)
+        if a.entry.shape is None
+    ]
+    anchor = replace(bench, gains=None).response(base, ahead)
+    gains = HitGains(gains_of(bench, terms, scatter), anchor, np.zeros_like(anchor))
+    there = replace(bench, gains=gains, short={})
+    ways = scatter_columns(there, base, terms, there.response(base, terms))
+    slope = ways[:, list(gain_columns(scatter))].reshape(
+        len(ways), anchor.shape[1], *anchor.shape[1:]
+    )
+    slope = np.einsum("rccn->rcn", slope) * bench.noise.sigma[:, :, None]
+    columns = _force_columns(there, base, bench.noise.sigma)
+    whitened = _with_noise(there, bench.noise, columns, ways)
+    expanded = replace(whitened, gains=replace(gains, slope=slope))
+    before, after = (b.residual(base, terms, FULL) for b in (bench, expanded))
+    return expanded if after @ after < before @ before else bench
+
+
+def _refined(
+    bench: SomeBench, base: FloatArray, terms: Sequence[Term], without: Sequence[int]
+) -> SomeBench:
+    """Return the bench with its noise estimated at a solution and at known gains."""
     seen = ~np.isin(np.arange(len(bench.campaign.hit)), without)
     at = with_converter_edge(_centred(bench, base, terms), base, terms)
     model = at.response(base, terms)
@@ -112,12 +159,7 @@ def _scatter(
         return no_scatter(directions, len(residual))
     rows = (residual / bench.noise.sigma[:, :, None]).reshape(len(residual), -1)
     records = _compressed(rows, ways, columns)
-    known = bench.excitation.conditions.settling
-    if known is not None:
-        rise = bench.rise(terms)
-        settled = np.zeros(records.along.shape)
-        settled[:, 1] = np.log((np.exp(known) + rise) / (1.0 + rise))
-        records = records.moved(settled)
+    records = records.moved(_known_values(bench, terms, directions))
     kept = np.flatnonzero(seen)
     known_hits = HitsSeen(
         _patterns(campaign)[:, kept],
@@ -132,6 +174,24 @@ def _scatter(
         records.some(kept), directions, known_hits, dof, bench.policy
     )
     return found if seen.all() else with_unseen_hits(found, records, kept)
+
+
+def _known_values(
+    bench: LumpedResidual,
+    terms: Sequence[Term],
+    directions: Sequence[ScatterDirection],
+) -> FloatArray:
+    """Return the deviations that are in the model, shape (n_records, n_columns)."""
+    conditions = bench.excitation.conditions
+    columns = sum(len(d.columns) for d in directions)
+    values = np.zeros((conditions.preload.size, columns))
+    if (known := conditions.settling) is not None:
+        rise = bench.rise(terms)
+        values[:, 1] = np.log((np.exp(known) + rise) / (1.0 + rise))
+    if bench.gains is not None:
+        (own,) = (d.columns for d in directions if d.name == CHANNEL_GAIN)
+        values[:, list(own)] = bench.gains.factor - 1.0
+    return values
 
 
 def _compressed(

@@ -2,12 +2,13 @@
 """Records of a fit: groups of its rows, its minimum, settled hits."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,3 +113,41 @@ class Settled:
     anchor: FloatArray
     slope: FloatArray
     rise: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HitGains:
+    """Expansion of a clipped model about the gains of each hit.
+
+    The samples determine the product of gain and response far better than the mean
+    gain, so the base must be free to change its scale without crossing the limit: as
+    the response grows, the gain falls, and its deviation enters by the slope.
+
+    Attributes:
+        factor: gain of each channel in each hit, shape (n_records, n_channels).
+        anchor: response ahead of the converter at which it was estimated, shape
+            (n_records, n_channels, n_samples).
+        slope: change of the clipped response by a relative gain, same shape.
+    """
+
+    factor: FloatArray
+    anchor: FloatArray
+    slope: FloatArray
+
+    def beside(self, response: FloatArray) -> FloatArray:
+        """Return the gains at which a response shows what the anchor showed.
+
+        Args:
+            response: ahead of the converter, shape of the anchor.
+        """
+        along = np.einsum("rcn,rcn->rc", response, self.anchor)
+        power = np.einsum("rcn,rcn->rc", self.anchor, self.anchor)
+        low, high = RESIDUALS.least_grown, 1.0 / RESIDUALS.least_grown
+        grown = np.clip(along / np.where(power > 0.0, power, 1.0), low, high)
+        return np.asarray(self.factor / np.where(power > 0.0, grown, 1.0))
+
+    def cut(self, length: int) -> "HitGains":
+        """Return the expansion of the first samples."""
+        return replace(
+            self, anchor=self.anchor[:, :, :length], slope=self.slope[:, :, :length]
+        )

@@ -16,7 +16,11 @@ from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
-from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
+from jointbench.analysis.gap.residuals.fit_records import (
+    Blocks,
+    HitGains,
+    Settled,
+)
 from jointbench.analysis.gap.residuals.joint_settling import (
     changes_joint,
     hit_stiffness,
@@ -32,6 +36,7 @@ from jointbench.analysis.gap.response.excitation import Excitation, prepare_exci
 from jointbench.analysis.gap.response.predict_records import (
     respond,
     respond_tapered,
+    shaped,
 )
 from jointbench.analysis.gap.response.search_effort import spend
 
@@ -55,6 +60,8 @@ class LumpedResidual:
         policy: thresholds for fits of the bench.
         mixing: replaces `shrink` where hits are correlated: the matrix of the
             components of all records that is removed, (n_records * n_kept) square.
+        gains: expansion about the gains of hits ahead of a converter that clips, or
+            None.
     """
 
     campaign: Campaign
@@ -70,6 +77,7 @@ class LumpedResidual:
     settled: Settled | None
     policy: Policy = field(default=STANDARD, kw_only=True)
     mixing: FloatArray | None = field(default=None, kw_only=True)
+    gains: HitGains | None = field(default=None, kw_only=True)
 
     @property
     def expanded(self) -> bool:
@@ -106,7 +114,20 @@ class LumpedResidual:
         self, base: FloatArray, terms: Sequence[Term], oversampling: int = 8
     ) -> FloatArray:
         """Predict the channels, shape (n_records, n_channels, n_samples)."""
-        actions = self.actions(terms)
+        return self.acted(base, self.actions(terms), oversampling)
+
+    def acted(
+        self, base: FloatArray, actions: Sequence[Action], oversampling: int
+    ) -> FloatArray:
+        """Predict the channels under actions, at the gains of each hit."""
+        if self.gains is None:
+            return self._respond(base, actions, oversampling)
+        ahead = self._ahead(base, actions, oversampling)
+        return self._through(ahead, actions, self.gains.factor)
+
+    def _respond(
+        self, base: FloatArray, actions: Sequence[Action], oversampling: int
+    ) -> FloatArray:
         integrated = any(a.entry.law is not None for a in actions)
         spend(self.campaign.response.size, oversampling if integrated else 0)
         return respond(
@@ -117,6 +138,37 @@ class LumpedResidual:
             oversampling=oversampling,
             measured=self.campaign.response,
         )
+
+    def _ahead(
+        self, base: FloatArray, actions: Sequence[Action], oversampling: int
+    ) -> FloatArray:
+        """Return the response ahead of the converter, without gains."""
+        below = [a for a in actions if a.entry.shape is None]
+        return self._respond(base, below, oversampling)
+
+    def _through(
+        self, ahead: FloatArray, actions: Sequence[Action], gains: FloatArray
+    ) -> FloatArray:
+        """Return what a converter shows of a response at some gains of each hit."""
+        rate = self.excitation.sample_rate
+        seen = ahead * gains[:, :, None]
+        return shaped(seen, self.campaign.response, actions, rate)
+
+    def expected(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int
+    ) -> FloatArray:
+        """Return the response whose gains count as scatter, shape of the response.
+
+        Beside the response, gains keep what the samples determine.
+        """
+        if self.gains is None:
+            return self.response(base, terms, oversampling)
+        actions = self.actions(terms)
+        ahead = self._ahead(base, actions, oversampling)
+        factor = self.gains.beside(ahead)
+        seen = self._through(ahead, actions, factor)
+        seen -= (factor[:, :, None] - 1.0) * self.gains.slope
+        return seen
 
     def tapered(
         self,
@@ -156,7 +208,7 @@ class LumpedResidual:
         changes this stiffness enters by the slope.
         """
         if self.settled is None:
-            r = self.response(base, terms, oversampling)
+            r = self.expected(base, terms, oversampling)
             r -= self.campaign.response
             return r
         model = self.campaign.model
@@ -169,7 +221,7 @@ class LumpedResidual:
             if not changes_joint(model, a)
         ]
         hits = hit_stiffness(self.excitation.conditions, self.settled)
-        r = settle(self, hits).response(moved, others, oversampling)
+        r = settle(self, hits).expected(moved, others, oversampling)
         r -= self.campaign.response
         share = base[at] - mean + np.log1p(self.rise(terms)) - hits
         r += share[:, None, None] * self.settled.slope
@@ -236,7 +288,7 @@ def _windowed(
         RESIDUALS.window_reach * decay * bench.campaign.sample_rate
     )
     short = _shortened(bench, scipy.fft.next_fast_len(reach, real=True))
-    r = short.response(base, terms, resolution.oversampling)
+    r = short.expected(base, terms, resolution.oversampling)
     r -= short.campaign.response
     r /= bench.noise.sigma[:, :, None]
     r *= _window(short, decay)
@@ -259,6 +311,7 @@ def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
             excitation=gated_excitation(
                 campaign, bench.time_gate, bench.excitation.conditions.settling
             ),
+            gains=None if bench.gains is None else bench.gains.cut(length),
             short={},
         )
     return bench.short[length]

@@ -202,6 +202,24 @@ class ResidualSettings:
         "samples",
         "samples at the same largest value from which a channel counts as clipped",
     )
+    gain_reach: float = numerical(
+        0.5,
+        "-",
+        "largest gain of a hit less 1 about which a clipped channel is expanded",
+        "beyond it a hit is a bad one, whose gain no expansion should follow",
+    )
+    least_grown: float = numerical(
+        0.3,
+        "-",
+        "least factor by which a response changes beside the gains of its hits",
+        "a response that shrank by more is another one, whose gains are unknown",
+    )
+    gain_rounds: int = numerical(
+        3,
+        "rounds",
+        "estimates of the gains of hits ahead of a converter that clips",
+        "each squares the error of the last: 3 % leave 1e-6 after three",
+    )
     delay_step: float = numerical(
         1e-3,
         "samples",

@@ -26,7 +26,6 @@ from jointbench.analysis.gap.residuals.scatter_record import (
     ScatterDirection,
 )
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
-from jointbench.analysis.gap.response.predict_records import respond
 
 
 def scatter_directions(campaign: Campaign) -> tuple[ScatterDirection, ...]:
@@ -75,7 +74,8 @@ def scatter_columns(
         terms: effects.
         model: response there, shape (n_records, n_channels, n_samples).
     """
-    columns = [_harder(bench, base, terms, model)]
+    level = 1.0 if bench.gains is None else bench.gains.factor[:, :, None]
+    columns = [_harder(bench, base, terms, model) / level]
     n = len(bench.campaign.model.bodies)
     for i, link in enumerate(bench.campaign.model.links):
         if link.joint and not bench.campaign.continuous:
@@ -85,7 +85,7 @@ def scatter_columns(
                 (bench.response(moved, terms) - model) / RESIDUALS.scatter_step
             )
     if not bench.campaign.continuous:
-        columns += _each_channel(_louder(bench, base, terms, model))
+        columns += _each_channel(_louder(bench, base, terms, model) / level)
         late = _later(bench, base, terms, model)
         columns += [late, *_each_channel(late)]
     stacked = np.stack(columns, axis=1)
@@ -146,12 +146,5 @@ def _later(
     step = RESIDUALS.delay_step
     late = np.array([step / bench.campaign.sample_rate])
     delay = Action(DELAY, "channel", -1, late)
-    moved = respond(
-        bench.campaign.model,
-        bench.theta(base),
-        bench.excitation,
-        [*bench.actions(terms), delay],
-        oversampling=8,
-        measured=bench.campaign.response,
-    )
+    moved = bench.acted(base, [*bench.actions(terms), delay], 8)
     return (moved - model) / step

@@ -117,9 +117,26 @@ def _measured_motion(
         np.multiply(x[body], power, out=spectra[:, i])
     spectra = _channels(spectra, s, actions)
     response = undamped(spectra, excitation)
+    return shaped(response, measured, actions, excitation.sample_rate)
+
+
+def shaped(
+    response: FloatArray,
+    measured: FloatArray | None,
+    actions: Sequence[Action],
+    rate: float,
+) -> FloatArray:
+    """Return the response with what happens to its samples: clipping, hum.
+
+    Args:
+        response: shape (n_records, n_channels, n_samples).
+        measured: needed by effects that fit their own phase, shape as the result.
+        actions: all effects; those without a shape are ignored.
+        rate: sample rate [Hz].
+    """
     for action in actions:
         if action.entry.shape is not None:
-            response = _shaped(response, measured, action, excitation.sample_rate)
+            response = _shaped(response, measured, action, rate)
     return response
 
 

@@ -5,6 +5,7 @@ import gap_bench as made
 import numpy as np
 
 from jointbench.analysis.gap.judgement.expected_residual import noise_sd
+from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -57,3 +58,31 @@ def test_clipped_samples_do_not_scatter_with_the_force() -> None:
     problem = make_problem(noisy, (clip.candidate,))
     fit = finish(problem, np.concatenate([BASE, clip.coordinates]), lambda line: None)
     assert fit.chi2 / noisy.blocks.dof - 1.0 < STANDARD.chi2_limit * noise_sd(noisy)
+
+
+def test_gains_that_move_samples_across_the_limit_leave_only_noise() -> None:
+    """Hits whose channels scatter by 3 % are explained beside a clipped channel.
+
+    The slopes of the gains alone leave a hundred times the noise near the limit. The
+    mean of the masses is off by as much as that of the gains, and must be free to move.
+    """
+    whole = make_bench(made.quiet_campaign()).response(BASE, [])
+    limit = 0.4 * np.abs(whole).max()
+    rng = np.random.default_rng(31)
+    gains = 1.0 + 0.03 * rng.standard_normal(whole.shape[:2])
+    clean = np.clip(whole * gains[:, :, None], -limit, limit)
+    seen = clean + QUIET * rng.standard_normal(clean.shape)
+    bench = make_bench(made.quiet_campaign(seen))
+    clip = made.term_of(bench, "saturation", "channel:all", [1.0 / limit])
+    coordinates = np.concatenate([BASE, clip.coordinates])
+    for _ in range(2):
+        noisy = refine_noise(
+            bench,
+            coordinates[: BASE.size],
+            [Term(clip.candidate, coordinates[BASE.size :])],
+        )
+        problem = make_problem(noisy, (clip.candidate,))
+        fit = finish(problem, coordinates, lambda line: None)
+        coordinates, bench = fit.x, noisy
+    assert fit.chi2 / noisy.blocks.dof - 1.0 < STANDARD.chi2_limit * noise_sd(noisy)
+    assert np.all(np.abs(fit.prior_deviations) < STANDARD.prior_limit)
