@@ -71,6 +71,21 @@ class NextStep:
     width: float
 
 
+def require_choice(sensors: int, hits: int, there: tuple[int, int]) -> None:
+    """Raise `UsageError` where more sensors or hit points are asked for than there are.
+
+    Args:
+        sensors: how many.
+        hits: how many points.
+        there: sensors and hit points that can be reached.
+    """
+    if not (0 < sensors <= there[0] and 0 < hits <= there[1]):
+        raise UsageError(
+            f"{sensors} sensors and {hits} hit points of {there[0]} and {there[1]} "
+            "that can be reached; ask for at least one, and not for more"
+        )
+
+
 def choose_plan(
     request: PlanRequest, sensors: int, hits: int, seed: int = 0
 ) -> HitPlan:
@@ -92,11 +107,7 @@ def choose_plan(
         Fedorov 1972, Theory of Optimal Experiments, ch. 3 (exchange).
     """
     there = request.pairs.own.shape
-    if not (0 < sensors <= there[0] and 0 < hits <= there[1]):
-        raise UsageError(
-            f"{sensors} sensors and {hits} hit points of {there[0]} and {there[1]} "
-            "that can be reached; ask for at least one, and not for more"
-        )
+    require_choice(sensors, hits, (there[0], there[1]))
     if comb(there[0], sensors) * comb(there[1], hits) <= _ALL:
         ends = [
             HitPlan(own, struck, request.repeats)

@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
+from scipy.stats import binomtest
 
 LAWS = ("persson", "bush_gibson_thomas", "greenwood_williamson")
 NEAR = 0.2
@@ -32,11 +33,8 @@ def wilson(right: int, count: int) -> str:
     """Return a share with its 95 % Wilson interval, in percent."""
     if count == 0:
         return "-"
-    z, share = 1.96, right / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count)
-    half *= math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    low, high = max(0.0, middle - half), min(1.0, middle + half)
+    share = right / count
+    low, high = binomtest(right, count).proportion_ci(method="wilson")
     ends = f"({100 * low:.1f} to {100 * high:.1f})"
     return f"{right} of {count} = {100 * share:.1f} % {ends}"
 

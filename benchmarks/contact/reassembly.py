@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.contact_bench.joint_states import (
@@ -167,13 +168,9 @@ def wilson(count: int, total: int) -> str:
     """Return a share with its 95 % interval by Wilson's formula."""
     if not total:
         return "none"
-    z = 1.959964
-    share = count / total
-    middle = (share + z * z / (2 * total)) / (1 + z * z / total)
-    half = z * np.sqrt(share * (1 - share) / total + (z / (2 * total)) ** 2)
-    half /= 1 + z * z / total
-    low, high = 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0)
-    return f"{count} of {total} = {100 * share:.1f} % ({low:.1f} to {high:.1f})"
+    low, high = binomtest(count, total).proportion_ci(method="wilson")
+    ends = f"({100 * low:.1f} to {100 * high:.1f})"
+    return f"{count} of {total} = {100 * count / total:.1f} % {ends}"
 
 
 def page(runs: Sequence[Run]) -> str:

@@ -3,17 +3,16 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from math import sqrt
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
 
 Run = dict[str, Any]
 QUANTILES = (0.5, 0.9, 0.99, 0.995)
 NOMINAL = 0.005
 ROOM = 1.3
 """Factor on the threshold from which the engine searches for an effect."""
-Z95 = 1.96
 
 HEAD = """# False alarms of the gap engine
 
@@ -49,11 +48,8 @@ GLOBAL = """
 
 def wilson(hits: int, count: int) -> tuple[float, float]:
     """Return the 95 % Wilson interval of a share [-]."""
-    share = hits / count
-    centre = share + Z95**2 / (2 * count)
-    half = Z95 * sqrt(share * (1 - share) / count + Z95**2 / (4 * count**2))
-    scale = 1 + Z95**2 / count
-    return (centre - half) / scale, (centre + half) / scale
+    low, high = binomtest(hits, count).proportion_ci(method="wilson")
+    return float(low), float(high)
 
 
 def share(hits: int, count: int) -> str:

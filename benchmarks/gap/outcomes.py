@@ -2,13 +2,12 @@
 """The score of a verdict, and the sets of campaigns that share a target."""
 
 from collections.abc import Callable, Sequence
-from math import sqrt
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
 
 NAMEABLE = 50.0
-Z95 = 1.96
 NOT_IN_CATALOGUE = ("hidden", "outside")
 Run = dict[str, Any]
 WORDS = (
@@ -46,11 +45,8 @@ def word_of(run: Run) -> str:
 
 def wilson(hits: int, count: int) -> tuple[float, float]:
     """Return the 95 % Wilson interval of a share [%]."""
-    share = hits / count
-    centre = share + Z95**2 / (2 * count)
-    half = Z95 * sqrt(share * (1 - share) / count + Z95**2 / (4 * count**2))
-    scale = 100 / (1 + Z95**2 / count)
-    return max(scale * (centre - half), 0.0), scale * (centre + half)
+    low, high = binomtest(hits, count).proportion_ci(method="wilson")
+    return 100 * float(low), 100 * float(high)
 
 
 def share_text(hits: int, count: int) -> str:

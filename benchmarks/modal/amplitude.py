@@ -22,6 +22,7 @@ import numpy as np
 from amplitude_cases import LAWS, Case, draw, linear_draw, pair_draw
 from amplitude_peers import PEERS, peer_curve
 from jointed_masses import true_curve
+from scipy.stats import binomtest
 
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
@@ -312,10 +313,8 @@ def wilson_ends(held: int, n: int) -> tuple[float, float]:
     """Return the ends of a share's 95 % Wilson interval [%]."""
     if n == 0:
         return 0.0, 100.0
-    z, p = _NORMAL_95, held / n
-    middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
-    half = z * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2)) / (1 + z**2 / n)
-    return 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0)
+    low, high = binomtest(held, n).proportion_ci(method="wilson")
+    return 100 * float(low), 100 * float(high)
 
 
 def wilson(held: int, n: int) -> str:

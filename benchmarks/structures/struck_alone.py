@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
+from scipy.stats import binomtest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
@@ -120,11 +121,8 @@ def joined(matrices: list[Any], rows: list[FloatArray], spring: float) -> FloatA
 
 def wilson(held: int, count: int) -> tuple[float, float]:
     """Return the 95 % interval of a share."""
-    share, z = held / count, WIDE
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * np.sqrt(share * (1 - share) / count + z * z / (4 * count**2))
-    half /= 1 + z * z / count
-    return max(middle - half, 0.0), min(middle + half, 1.0)
+    low, high = binomtest(held, count).proportion_ci(method="wilson")
+    return float(low), float(high)
 
 
 def page(done: list[dict[str, Any]]) -> str:

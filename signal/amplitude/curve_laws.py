@@ -217,6 +217,10 @@ def _fit_law(law: _Law, x: FloatArray, data: FloatArray, root: FloatArray) -> La
     prior = np.full(value.size, 0.5 / max(value.size - 1, 1))
     prior[0] = 0.5
     weight = scipy.special.softmax(np.log(prior) - 0.5 * chi2 / excess)
+    # An onset that is ruled out may have an infinite variance: 0 times infinity.
+    weight, value, variance = (
+        one[weight > np.finfo(float).eps] for one in (weight, value, variance)
+    )
     mean = float(weight @ value)
     sd = float(np.sqrt(weight @ (excess * variance + (value - mean) ** 2)))
     return LawFit(law.name, mean, sd, float(chi2[best]), float(criterion[best]))

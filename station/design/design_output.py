@@ -2,6 +2,7 @@
 """A designed test on the terminal, as JSON, and as a plan for ``measure``."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ from jointbench.station.screen.terminal import console, table, working, write_js
 
 _SHOWN = 8
 _INTERVAL = 1.96
+_POINTS = re.compile(r"(?m)^points\s*=\s*\[[^\]]*\]")
+_POINT = re.compile(r"(?m)^point\s*=\s*\"[^\"]*\"")
 
 
 def run_design(
@@ -46,11 +49,13 @@ def run_design(
         )
     inputs = [one for one in (model, request.identified, template) if one is not None]
     check_outputs(inputs, [json_target])
+    draft = None
+    if template is not None and out is not None:
+        draft = template.read_text(encoding="utf-8")
+        request = replace(request, plan_sensors=_plan_sensors(draft))
     with working("reducing, choosing points"):
         found = designed_test(model, request)
-    text = None
-    if template is not None and out is not None:
-        text = plan_text(found, template.read_text(encoding="utf-8"))
+    text = None if draft is None else plan_text(found, draft)
     show_design(found, json_target)
     write_json(json_target, design_json(found))
     if text is not None and out is not None:
@@ -99,30 +104,26 @@ def plan_text(found: DesignedTest, template: str) -> str:
     Args:
         found: designed test.
         template: text of a plan: its points, repeats and places of the response
-            sensors, in order, are replaced.
-
-    Raises:
-        BadData: the template has fewer response sensors, or no [hits].
+            sensors, in order, are replaced; it has as many as the design.
     """
     points = ", ".join(f'"{found.points[at]}"' for at in found.plan.hits)
-    text, count = re.subn(
-        r"(?m)^points\s*=\s*\[[^\]]*\]", f"points = [{points}]", template, count=1
-    )
-    if not count:
-        raise BadData("the plan has no 'points = [...]' in [hits]; add it")
+    text = _POINTS.sub(f"points = [{points}]", template, count=1)
     repeats = int(np.ceil(found.plan.repeats))
     text = re.sub(r"(?m)^repeats\s*=\s*\d+", f"repeats = {repeats}", text, count=1)
     places = [found.points[at] for at in found.plan.sensors]
-    own = re.findall(r"(?m)^point\s*=\s*\"[^\"]*\"", text)
-    if len(own) != len(places):
-        raise BadData(
-            f"the plan has {len(own)} response sensors with a point, the design "
-            f"{len(places)}; give the plan as many, or change design.sensors"
-        )
     left = iter(places)
-    return re.sub(
-        r"(?m)^point\s*=\s*\"[^\"]*\"", lambda _: f'point = "{next(left)}"', text
-    )
+    return _POINT.sub(lambda _: f'point = "{next(left)}"', text)
+
+
+def _plan_sensors(template: str) -> int:
+    """Return the number of response sensors of a plan.
+
+    Raises:
+        BadData: it has no points in [hits].
+    """
+    if not _POINTS.search(template):
+        raise BadData("the plan has no 'points = [...]' in [hits]; add it")
+    return len(_POINT.findall(template))
 
 
 def design_json(found: DesignedTest) -> dict[str, Any]:

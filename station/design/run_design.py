@@ -23,6 +23,7 @@ from jointbench.analysis.design.plan_search import (
     choose_plan,
     next_steps,
     random_plan,
+    require_choice,
 )
 from jointbench.analysis.structures.design.pair_information import (
     AddedMass,
@@ -93,6 +94,7 @@ class DesignRequest:
             step is asked for.
         deviation: wanted sd [-], or None.
         mass: added at each point in turn as a next step [kg], or None.
+        plan_sensors: response sensors of the plan to be written, or None.
     """
 
     identified: Path | None = None
@@ -100,6 +102,7 @@ class DesignRequest:
     measured: bool = False
     deviation: float | None = None
     mass: float | None = None
+    plan_sensors: int | None = None
 
 
 def designed_test(model: Path, request: DesignRequest) -> DesignedTest:
@@ -120,11 +123,12 @@ def designed_test(model: Path, request: DesignRequest) -> DesignedTest:
             f"{model}: a design needs a table [design] with a band, and the points "
             "that can be reached as [reachable.NAME] with body, position and direction"
         )
-    structure = structure_of(settings, model.parent)
-    values = _values(settings, table, structure, request)
     places = {**settings.reachable}
     if request.measured:
         places |= {**settings.sensors, **settings.hits}
+    _require_points(settings, table, request)
+    structure = structure_of(settings, model.parent)
+    values = _values(settings, table, structure, request)
     mounted = list(sensors_of(places).values())
     loads = sensor_rows(structure, mounted)
     modes, box = settings.identify.modes or _MODES, settings.identify.stiffness_box
@@ -275,11 +279,27 @@ def _search(
     )
 
 
+def _require_points(
+    settings: StructureModel, table: DesignTable, request: DesignRequest
+) -> None:
+    """Check sensors and hit points before the meshes are reduced, which takes long."""
+    if request.measured:
+        if not settings.sensors or not settings.hits:
+            raise BadData("--next needs [sensors.*] and [hits.*] as they were measured")
+        chosen = len(settings.sensors)
+    else:
+        require_choice(table.sensors, table.hits, (len(settings.reachable),) * 2)
+        chosen = table.sensors
+    if request.plan_sensors not in {None, chosen}:
+        raise BadData(
+            f"the plan has {request.plan_sensors} response sensors with a point, the "
+            f"design {chosen}; give the plan as many, or change design.sensors"
+        )
+
+
 def _measured(
     settings: StructureModel, names: Sequence[str], table: DesignTable
 ) -> HitPlan:
-    if not settings.sensors or not settings.hits:
-        raise BadData("--next needs [sensors.*] and [hits.*] as they were measured")
     return HitPlan(
         tuple(names.index(one) for one in settings.sensors),
         tuple(names.index(one) for one in settings.hits),

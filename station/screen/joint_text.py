@@ -1,10 +1,25 @@
 # SPDX-License-Identifier: MIT
 """Text of a joint parameter: its value, or its admissible range."""
 
+from collections.abc import Iterable
+
+from rich.table import Table
+
 from jointbench.analysis.lumped.identified import JointParameter
+from jointbench.station.screen.terminal import table
 from jointbench.station.screen.value_text import with_sd
 
 VALUE_LEGEND = "(± one standard deviation; admissible range if not identifiable)"
+
+
+def parameter_table(title: str, parameters: Iterable[JointParameter]) -> Table:
+    """Return the table of identified parameters, with the legend of their values."""
+    rows = [
+        (one.name, parameter_text(one), one.unit, "yes" if one.identifiable else "no")
+        for one in parameters
+    ]
+    columns = ("parameter", "value", "unit", "identifiable")
+    return table(f"{title} {VALUE_LEGEND}", columns, rows)
 
 
 def parameter_text(parameter: JointParameter) -> str:

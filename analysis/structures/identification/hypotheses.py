@@ -117,6 +117,7 @@ def hypotheses_of(
     priors: Mapping[str, Prior],
     settings: HypothesisSettings,
     structure: Structure | None = None,
+    predicted: int | None = None,
 ) -> tuple[StructureHypothesis, ...]:
     """List the hypotheses about one state, the modes as measured first.
 
@@ -128,6 +129,8 @@ def hypotheses_of(
         priors: of the identification.
         settings: prior probabilities and ranges.
         structure: on its meshes, for its supports; None leaves those out.
+        predicted: number of elastic modes of the model; None for one more than measured
+            at least.
 
     Returns:
         One mode missing below each measured one, each one spurious, each two
@@ -143,7 +146,7 @@ def hypotheses_of(
         priors,
     )
     cases = [
-        *_missing(base, paired),
+        *_missing(base, paired, predicted),
         *_spurious(base),
         *_swapped(base, paired),
         *_moduli(base, settings),
@@ -159,8 +162,15 @@ def hypotheses_of(
     return (base, *shared)
 
 
-def _missing(base: StructureHypothesis, paired: IntArray) -> list[StructureHypothesis]:
-    """Leave out one predicted mode below the highest one, in order of frequency."""
+def _missing(
+    base: StructureHypothesis, paired: IntArray, predicted: int | None
+) -> list[StructureHypothesis]:
+    """Leave out one predicted mode below the highest one, in order of frequency.
+
+    Where the model predicts no more modes than were measured, none can be missing.
+    """
+    if predicted is not None and predicted <= paired.size:
+        return []
     found = []
     for skipped in range(paired.size):
         order = np.arange(paired.size) + (np.arange(paired.size) >= skipped)

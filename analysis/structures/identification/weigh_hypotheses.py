@@ -155,8 +155,10 @@ def weigh_hypotheses(
             known, sought, _named(start or {}, one.label), surveyed, settings
         )
         first = search.ends(base)
-        paired = _paired(*first, one)
-        cases = hypotheses_of(model, one, paired, base.priors, settings, structure)
+        paired, predicted = _paired(*first, one)
+        cases = hypotheses_of(
+            model, one, paired, base.priors, settings, structure, predicted
+        )
         tried = [first, *(search.ends(case) for case in cases[1:])]
         found.append(_weighed(one.label, cases, tried, settings))
     return tuple(found)
@@ -234,15 +236,19 @@ def _named(start: Mapping[str, float], label: str) -> dict[str, float]:
 
 def _paired(
     problem: StiffnessProblem, ends: Sequence[WeighedEnd], evidence: StructureEvidence
-) -> IntArray:
-    """Return the elastic predicted mode of each measured one at the best end."""
+) -> tuple[IntArray, int]:
+    """Return the elastic predicted mode of each measured one, and their number.
+
+    Both are those of the best end.
+    """
     if evidence.modes is None:
-        return np.zeros(0, np.int64)
+        return np.zeros(0, np.int64), 0
     best = max(ends, key=lambda one: one.log_evidence)
     values = values_of(problem, best.end.unknowns, 0)
     state = modal_state(problem.model, values.stiffness)
     candidates = np.arange(state.rigid, problem.model.modes)
-    return np.asarray(evidence_pairs(state, candidates, evidence) - state.rigid)
+    pairs = evidence_pairs(state, candidates, evidence) - state.rigid
+    return np.asarray(pairs), int(candidates.size)
 
 
 def _weighed(

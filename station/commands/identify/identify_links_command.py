@@ -22,8 +22,8 @@ from jointbench.station.pipeline.link_stage import fits, identify_joint
 from jointbench.station.pipeline.modal_options import parse_band
 from jointbench.station.results.results_file import results_path
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
-from jointbench.station.screen.terminal import console, table, working, write_json
+from jointbench.station.screen.joint_text import parameter_table
+from jointbench.station.screen.terminal import console, working, write_json
 
 
 def run_identify(
@@ -115,17 +115,8 @@ def identify_any(
 def show_joint(result: Identification, json_target: str | None) -> None:
     """Print the identified parameters with their uncertainty."""
     screen = console(json_target)
-    rows = [
-        (
-            one.name,
-            parameter_text(one),
-            one.unit,
-            "yes" if one.identifiable else "no",
-        )
-        for one in result.parameters
-    ]
-    title = f"Links identified from modes: {result.verdict.value} {VALUE_LEGEND}"
-    screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
+    title = f"Links identified from modes: {result.verdict.value}"
+    screen.print(parameter_table(title, result.parameters))
     reasons = [*result.reasons, *(p.reason for p in result.parameters if p.reason)]
     for reason in dict.fromkeys(reasons):
         screen.print(f"  {reason}", markup=False)

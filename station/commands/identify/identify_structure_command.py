@@ -23,7 +23,7 @@ from jointbench.station.joints.hypothesis_output import (
 )
 from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.report.theory_section import show_theory, theory_section
-from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
+from jointbench.station.screen.joint_text import parameter_table
 from jointbench.station.screen.terminal import console, table, write_json
 
 
@@ -81,17 +81,8 @@ def run_identify_structure(
 def show_structure(result: StructureIdentification, json_target: str | None) -> None:
     """Print the identified parameters, the solutions and the full check."""
     screen = console(json_target)
-    rows = [
-        (
-            one.name,
-            parameter_text(one),
-            one.unit,
-            "yes" if one.identifiable else "no",
-        )
-        for one in result.parameters
-    ]
-    title = f"Joints: {result.verdict.value} {VALUE_LEGEND}"
-    screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
+    title = f"Joints: {result.verdict.value}"
+    screen.print(parameter_table(title, result.parameters))
     for reason in result.reasons:
         screen.print(f"  {reason}", markup=False)
     for state in result.states:

@@ -133,3 +133,17 @@ def test_what_a_design_lacks_is_said(
     assert "a design needs a table [design]" in " ".join(
         capsys.readouterr().err.split()
     )
+
+
+def test_counts_of_sensors_are_checked_before_the_meshes(
+    monkeypatch: pytest.MonkeyPatch,
+    model: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Of two faults, a mesh that is not there and too many sensors, the second."""
+    text = model.read_text(encoding="utf-8")
+    box = 'box = ["200 mm", "100 mm", "50 mm"]\ncells = [2, 1, 1]'
+    text = text.replace(box, 'mesh = "none.msh"\nmesh_unit = "mm"')
+    model.write_text(text.replace("sensors = 3", "sensors = 99"), encoding="utf-8")
+    assert run(monkeypatch, model) == EXIT_USAGE
+    assert "99 sensors" in " ".join(capsys.readouterr().err.split())

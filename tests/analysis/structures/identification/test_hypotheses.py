@@ -127,3 +127,19 @@ def test_swapped_modes_need_more_than_frequencies(
         if one.kind is HypothesisKind.SWAPPED
     ]
     assert [one.modes for one in swapped] == [(at, at + 1) for at in range(6)]
+
+
+def test_no_mode_is_missing_where_the_model_predicts_no_more(
+    reduced: ReducedModel, truth: JointValues
+) -> None:
+    """As many measured as predicted modes: there is none to leave out."""
+    plain, settings = frequencies(reduced, truth), HypothesisSettings()
+    order = np.array([1, 0, 2, 3, 4, 5, 6])
+    for predicted, missing in ((7, 0), (8, 7)):
+        kinds = [
+            one.kind
+            for one in hypotheses_of(
+                reduced, plain, order, {}, settings, predicted=predicted
+            )
+        ]
+        assert kinds.count(HypothesisKind.MISSING) == missing
