@@ -13,7 +13,7 @@ from jointbench.signal.modal.modal_model import ModalModel
 _PEAKED = 2.0
 # The ends of a peak, in half-power half-widths.
 _ENDS = 4.0
-# Half-power half-widths within which modes share a pole as far as the data can tell,
+# Half-power half-widths within which modes share a pole as far as the data show,
 # and within which they overlap: fits trade one for another there.
 _SHARED, _OVERLAP = 0.2, 1.0
 
@@ -66,7 +66,7 @@ def _used_up_words(
     """State where modes are as many as the references can show at one frequency.
 
     The residue of a shared pole has no more independent columns than there are
-    references, whatever the number of modes: a further one leaves nothing behind.
+    references, whatever the number of modes: a further one leaves no trace.
 
     Args:
         model: the modes, by ascending frequency.
