@@ -3,7 +3,7 @@
 
 from collections.abc import Iterable
 
-from rich.table import Table
+from rich.console import RenderableType
 
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.screen.terminal import table
@@ -12,7 +12,7 @@ from jointbench.station.screen.value_text import with_sd
 VALUE_LEGEND = "(± one standard deviation; admissible range if not identifiable)"
 
 
-def parameter_table(title: str, parameters: Iterable[JointParameter]) -> Table:
+def parameter_table(title: str, parameters: Iterable[JointParameter]) -> RenderableType:
     """Return the table of identified parameters, with the legend of their values."""
     rows = [
         (one.name, parameter_text(one), one.unit, "yes" if one.identifiable else "no")
