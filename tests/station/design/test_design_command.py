@@ -143,7 +143,7 @@ def test_counts_of_sensors_are_checked_before_the_meshes(
     """Of two faults, a mesh that is not there and too many sensors, the second."""
     text = model.read_text(encoding="utf-8")
     box = 'box = ["200 mm", "100 mm", "50 mm"]\ncells = [2, 1, 1]'
-    text = text.replace(box, 'mesh = "none.msh"\nmesh_unit = "mm"')
+    text = text.replace(box, 'mesh = "none.msh"\nmesh_unit = "1 mm"')
     model.write_text(text.replace("sensors = 3", "sensors = 99"), encoding="utf-8")
     assert run(monkeypatch, model) == EXIT_USAGE
     assert "99 sensors" in " ".join(capsys.readouterr().err.split())
