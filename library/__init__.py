@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from jointbench.station.library.gaps import gap
     from jointbench.station.library.hit_results import hits
     from jointbench.station.library.identified_joints import identify
+    from jointbench.station.library.joint_pressures import pressure
     from jointbench.station.library.machines import machine
     from jointbench.station.library.measurements import open_measurement as open  # noqa: A004
     from jointbench.station.library.measurements import record
@@ -49,6 +50,7 @@ _PLACES = {
     "machine": ("machines", "machine"),
     "modes": ("mode_results", "modes"),
     "open": ("measurements", "open_measurement"),
+    "pressure": ("joint_pressures", "pressure"),
     "process": ("archives", "process"),
     "reassembly": ("assemblies", "reassembly"),
     "record": ("measurements", "record"),
@@ -67,6 +69,7 @@ __all__ = [
     "machine",
     "modes",
     "open",
+    "pressure",
     "process",
     "reassembly",
     "record",

@@ -41,6 +41,7 @@ from jointbench.station.commands.joint_commands import (
     machine_command,
     reassembly_command,
 )
+from jointbench.station.commands.pressure_command import pressure_command
 from jointbench.station.commands.profile_command import profile_command
 from jointbench.station.commands.recorded_data_commands import (
     import_command,
@@ -98,6 +99,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
         "export-joint": export_joint_command,
         "contact": contact_command,
         "pressure-map": pressure_map_command,
+        "pressure": pressure_command,
         "machine": machine_command,
         "gap": gap_command,
         "next": next_command,

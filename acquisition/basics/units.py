@@ -54,6 +54,7 @@ _UNITS = MappingProxyType(
         | dict.fromkeys(("lbfin", "inlbf", "lbin", "inlb"), _POUND_FORCE * _INCH)
         | {"kgfm": STANDARD_GRAVITY},
         "mass": {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": _POUND},
+        "area": {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6, "um2": 1e-12},
         "density": {"kg/m3": 1.0, "g/cm3": 1e3, "kg/dm3": 1e3},
         "stiffness": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "GN/m": 1e9, "N/mm": 1e3}
         | {"kN/mm": 1e6, "N/um": 1e6, "kN/um": 1e9, "N/nm": 1e9}

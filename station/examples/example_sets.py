@@ -75,6 +75,11 @@ EXAMPLES = (
         "stiffness and damping of a joint over its preload, as a table",
         ("joint-stiffness.toml", "joint-stiffness.csv"),
     ),
+    ExampleSet(
+        "pressed",
+        "two plates under four bolts: the pressure between them",
+        ("pressed-plates.toml",),
+    ),
     ExampleSet("archive", "a year of sessions on one joint, and two recipes"),
     ExampleSet(
         "machine", "a grinder of seven bodies and six joints", ("grinder.toml",)

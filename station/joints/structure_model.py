@@ -33,6 +33,8 @@ from jointbench.analysis.structures.meshes.polygons import Patch, disc, rectangl
 from jointbench.analysis.structures.meshes.solid_shapes import SolidShape, mesh_shapes
 from jointbench.analysis.structures.reduction.mounted_sensors import MountedSensor
 from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.joints.pattern_file import read_pattern
+from jointbench.station.joints.pressure_table import PressureTable
 from jointbench.station.joints.shape_table import PatchTable, ShapeTable
 from jointbench.station.joints.structure_contact import TheoryTable, joint_of
 from jointbench.station.joints.structure_tables import (
@@ -61,6 +63,7 @@ class StructureModel(StrictTable):
     measured: MeasuredTable | None = None
     identify: IdentifyTable = IdentifyTable()
     contact: TheoryTable | None = None
+    pressure: PressureTable | None = None
 
     @model_validator(mode="after")
     def _names_exist(self) -> "StructureModel":
@@ -94,13 +97,17 @@ def structure_of(model: StructureModel, folder: Path) -> Structure:
         meshed_body(name, table, model.materials, folder)
         for name, table in model.bodies.items()
     ]
-    joints = [
-        Joint(name, one.between, tuple(map(patch_of, one.patches)), one.face, one.glued)
-        for name, one in model.joints.items()
-    ]
+    joints = [joint_of_table(name, one, folder) for name, one in model.joints.items()]
     supports = [Support(s.body, s.face, s.kind, s.stiffness) for s in model.supports]
     masses = list(masses_of(model).values())
     return build_structure(bodies, joints, supports=supports, masses=masses)
+
+
+def joint_of_table(name: str, table: JointTable, folder: Path) -> Joint:
+    """Return the joint of a table; its pattern is relative to `folder`."""
+    patches = tuple(map(patch_of, table.patches))
+    pattern = None if table.pattern is None else read_pattern(folder / table.pattern)
+    return Joint(name, table.between, patches, table.face, table.glued, pattern)
 
 
 def masses_of(model: StructureModel) -> dict[str, PointMass]:

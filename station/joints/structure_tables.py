@@ -67,12 +67,17 @@ class SolidTable(StrictTable):
 
 
 class JointTable(StrictTable):
-    """Where two bodies, or a body and ``ground``, touch."""
+    """Where two bodies, or a body and ``ground``, touch.
+
+    `pattern` is a table of points that ``jointbench pressure`` wrote: springs and
+    dampers are spread over the joint like the stiffness in it.
+    """
 
     between: tuple[str, str]
     face: str | None = None
     patches: tuple[PatchTable, ...] = ()
     glued: bool = False
+    pattern: Path | None = None
 
 
 class SupportTable(StrictTable):

@@ -88,6 +88,10 @@ def machine_key(model: MachineModel, folder: Path) -> str:
             name: {key: one for key, one in table.items() if key not in _VALUES}
             for name, table in every[kind].items()
         }
+    patterns = {name: one["pattern"] for name, one in every["joints"].items()}
+    parts["patterns"] = {
+        name: _content(folder, one) for name, one in patterns.items() if one
+    }
     parts["band"] = model.analysis.band
     text = json.dumps([CACHE_VERSION, parts], sort_keys=False)
     return "machine-" + hashlib.sha256(text.encode()).hexdigest()

@@ -30,7 +30,6 @@ from jointbench.analysis.structures.matrices.beam_body import (
 )
 from jointbench.analysis.structures.matrices.parts import (
     FaceMass,
-    Joint,
     PointMass,
     Support,
 )
@@ -38,6 +37,7 @@ from jointbench.analysis.structures.matrices.structure import build_structure
 from jointbench.analysis.structures.matrices.surface_motion import Attachment
 from jointbench.station.files.toml_file import StrictTable
 from jointbench.station.joints.structure_model import (
+    joint_of_table,
     material_of,
     meshed_body,
     patch_of,
@@ -130,10 +130,7 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
         meshed_body(name, table, model.materials, folder)
         for name, table in model.bodies.items()
     ]
-    joints = [
-        Joint(name, one.between, tuple(map(patch_of, one.patches)), one.face, one.glued)
-        for name, one in model.joints.items()
-    ]
+    joints = [joint_of_table(name, one, folder) for name, one in model.joints.items()]
     supports = [Support(s.body, s.face, s.kind, s.stiffness) for s in model.supports]
     structure = build_structure(
         solids, joints, supports=supports, masses=[_mass(one) for one in model.masses]

@@ -2,7 +2,7 @@
 """The matrices of joints, supports and attached masses over all nodes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -112,6 +112,10 @@ def _joint_face(build: Assembly, joint: Joint) -> JointFace:
     motion = _placed(motions[0], build, joint.between[0], total)
     if motions[1] is not None:
         motion = Sparse(motion - _placed(motions[1], build, joint.between[1], total))
+    if joint.pattern is not None:
+        place = points.position @ plane.frame[1:].T
+        weight = joint.pattern.spread(place, points.weight)
+        points = replace(points, weight=weight)
     return JointFace(motion, points, plane.frame)
 
 

@@ -10,6 +10,7 @@ from jointbench.analysis.structures.matrices.element_assembly import (
     Sparse,
     assemble,
 )
+from jointbench.analysis.structures.matrices.spring_pattern import SpringPattern
 from jointbench.analysis.structures.meshes.mesh import Mesh
 from jointbench.analysis.structures.meshes.polygons import Patch
 
@@ -119,6 +120,7 @@ class Joint:
         face: of the first body, ``"z+"`` for example; default is the planes with
             opposing faces; required for the ground.
         glued: rigidly tied, without parameters.
+        pattern: how springs and dampers are spread over it; None is evenly.
     """
 
     name: str
@@ -126,3 +128,4 @@ class Joint:
     patches: tuple[Patch, ...] = ()
     face: str | None = None
     glued: bool = False
+    pattern: SpringPattern | None = None
