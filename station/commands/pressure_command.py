@@ -32,7 +32,7 @@ def pressure_command(
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Compute the pressure over a joint, and its stiffness from it.
+    """Compute the pressure over a joint and its stiffness.
 
     Bolts and weight press two meshed bodies together, and the surface opens where
     nothing presses it. A contact law at the local pressure gives stiffness and damping,

@@ -72,7 +72,7 @@ class BoltTable(StrictTable):
         )
 
 
-class LawTable(StrictTable):
+class PowerLawTable(StrictTable):
     """A power law: `stiffness` on `area` at `pressure`, and how it grows."""
 
     stiffness: Annotated[float, with_unit("stiffness"), Field(gt=0)]
@@ -108,7 +108,7 @@ class PressureTable(StrictTable):
     preload_sd: _Spread = 0.0
     gravity: tuple[float, float, float] | None = None
     crown: Annotated[float, with_unit("length"), Field(ge=0)] = 0.0
-    law: LawTable | None = None
+    law: PowerLawTable | None = None
     reference_area: _Area | None = None
     reference_area_sd: _Spread = 0.0
     frequency: Annotated[float, with_unit("frequency"), Field(gt=0)] = 100.0
