@@ -16,6 +16,7 @@ from jointbench.analysis.gap.surface_bench.process_effects import free_shape
 from jointbench.analysis.gap.surface_bench.shape_rows import ShapeRow
 from jointbench.analysis.gap.surface_bench.surface_effect import (
     INSTRUMENT_SITE,
+    Act,
     SurfaceEffect,
 )
 from jointbench.analysis.gap.surface_bench.surface_rows import SurfaceRows
@@ -52,18 +53,25 @@ def _adds_noise(
     return replace(state, noise=state.noise + added)
 
 
-def _rounds(
-    values: FloatArray, state: SurfaceState, sample: LineSample
-) -> SurfaceState:
-    state = replace(state, step=float(values[0]) / sample.scale)
-    return state.shifted(ShapeRow.GRID, 1.0)
+def _rounds(rows: SurfaceRows) -> Act:
+    """Return what a converter adds: steps, their noise, and bends of one step."""
+    kurtosis = float(np.log1p(rows.shapes.rounded))
+
+    def act(
+        values: FloatArray, state: SurfaceState, sample: LineSample
+    ) -> SurfaceState:
+        state = replace(state, step=float(values[0]) / sample.scale)
+        state = state.shifted(ShapeRow.BEND_KURTOSIS, kurtosis)
+        return state.shifted(ShapeRow.GRID, 1.0)
+
+    return act
 
 
 def instrument_effects(rows: SurfaceRows) -> list[SurfaceEffect]:
     """Return the effects of the instrument that the rows can show."""
     pairs = [(_tip(), _traces), (_blur(), _blurs), (_noise(), _adds_noise)]
     if rows.used[ShapeRow.GRID]:
-        pairs.append((_steps(), _rounds))
+        pairs.append((_steps(), _rounds(rows)))
     return [SurfaceEffect(effect, act, INSTRUMENT_SITE) for effect, act in pairs]
 
 

@@ -7,6 +7,9 @@ from enum import IntEnum
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
+from jointbench.analysis.gap.surface_bench.rounded_bends import (
+    rounded_bend_kurtosis,
+)
 from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
 
@@ -45,6 +48,7 @@ class ShapeRows:
         step: of which all heights are multiples [m]; 0 for none.
         filled: points that were filled in [-].
         bend: variance of second differences [m^2].
+        rounded: excess kurtosis of them that rounding to that step causes [-].
     """
 
     value: FloatArray
@@ -53,6 +57,7 @@ class ShapeRows:
     step: float
     filled: int
     bend: float
+    rounded: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -84,6 +89,7 @@ def shape_rows(lines: FloatArray, raw: FloatArray) -> ShapeRows:
         step,
         filled,
         float(np.var(bends)),
+        rounded_bend_kurtosis(lines, step),
     )
 
 

@@ -243,6 +243,12 @@ class SurfaceBenchSettings:
     finish_hurst: float = numerical(
         0.5, "-", "H of the finer process where the lines do not determine it"
     )
+    rounding_points: int = numerical(
+        14, "-", "power of two of the points of a moment of rounded differences"
+    )
+    rounding_reach: float = numerical(
+        0.3, "-", "first step of a search for the differences ahead of a converter"
+    )
     decade_parts: int = numerical(
         2, "-", "parts of a decade of wavelength that are shown as one row"
     )

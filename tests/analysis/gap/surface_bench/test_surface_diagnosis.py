@@ -5,10 +5,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
+from scipy.stats import kurtosis
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Profile, all_valid
 from jointbench.analysis.gap.model.diagnosis_record import Finding
+from jointbench.analysis.gap.surface_bench.rounded_bends import (
+    rounded_bend_kurtosis,
+)
 from jointbench.analysis.gap.surface_bench.surface_diagnosis import diagnose_surface
 from jointbench.signal.fractal.verdict_records import SurfaceVerdict
 
@@ -73,3 +78,21 @@ def test_an_unknown_name_is_refused() -> None:
     made = Profile("walk", line, 1e-6, all_valid(line))
     with pytest.raises(UsageError, match="rolloff"):
         diagnose_surface(made, without=frozenset({"roll"}))
+
+
+@pytest.mark.parametrize("correlation", [-0.3, 0.0, 0.6])
+@pytest.mark.parametrize("step", [1.0, 4.0])
+def test_kurtosis_of_rounded_bends_is_that_of_a_long_line(
+    correlation: float, step: float
+) -> None:
+    """Mean squares of a rounded line determine its fourth moment.
+
+    Without it, coarse steps are explained by outliers beside them.
+    """
+    rng = np.random.default_rng(5)
+    slope = lfilter([1.0], [1.0, -correlation], rng.standard_normal(200_000))
+    heights = step * np.round(np.cumsum(slope / slope.std()) / step)
+    measured = kurtosis(np.diff(heights, 2))
+    assert rounded_bend_kurtosis(heights[None], step) == pytest.approx(
+        measured, abs=0.05 + 0.05 * abs(measured)
+    )
