@@ -237,7 +237,7 @@ def _depends_on_speed(kinds: IntArray) -> bool:
 @compiled()
 def _last_force(force: FloatArray) -> int:
     """Return the last sample with a force, 0 if there is none."""
-    end = force.shape[0] - 1
+    end = int(force.shape[0]) - 1
     while end > 0:
         for h in range(force.shape[1]):
             if force[end, h] != 0.0:
