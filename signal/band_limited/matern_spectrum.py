@@ -70,10 +70,13 @@ class BandLimited:
             transfer: what the instrument is known to do.
         """
         tip = transfer.tip is not None
-        total = np.zeros_like(omega)
-        for k in range(-_IMAGES, _IMAGES + 1):
-            place = np.abs(omega + 2 * np.pi * k)
-            total += self.surface(place) * self.short_cut(place, tip=tip)
+        # All images at once: a call costs more than the points of a spectrum.
+        images = 2 * np.pi * np.arange(-_IMAGES, _IMAGES + 1)
+        place = np.abs(omega + images.reshape(-1, *[1] * np.ndim(omega)))
+        density = self.surface(place)
+        if self.blur > 0:
+            density *= self.short_cut(place, tip=tip)
+        total = density.sum(axis=0)
         edge = np.array(2 * np.pi * (_IMAGES + 0.5))
         beyond = self.surface(edge) * self.short_cut(edge, tip=tip)
         # 2 integral of q^(-1-2H) beyond the images, over their distance.

@@ -29,6 +29,25 @@ INDEPENDENT_ROWS = 8.0
 """Rows farther apart than this are independent profiles [samples]."""
 
 
+@dataclass(frozen=True, slots=True)
+class SeenInMetres:
+    """Structure function of a measured surface over lags in metres.
+
+    Two are equal where their surfaces are, which a covariance that is kept asks for.
+
+    Attributes:
+        surface: with lengths in samples.
+        spacing: of the samples [m].
+    """
+
+    surface: SeenSurface
+    spacing: float
+
+    def __call__(self, lag: FloatArray) -> FloatArray:
+        """Return the structure function at lags [m], of any shape."""
+        return self.surface.seen(lag / self.spacing)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FractalProblem:
     """A structure function at the lags of a fit, with its covariance.
@@ -115,7 +134,7 @@ class FractalProblem:
     def scatter(self, seen: SeenSurface) -> FloatArray:
         """Return the covariance of S over the S of `seen`, shape (n, n) [-]."""
         spacing = self.estimate.spacing
-        scatter = self.covariance_of(lambda lag: seen.seen(lag / spacing))
+        scatter = self.covariance_of(SeenInMetres(seen, spacing))
         tailed: FloatArray = self.tails * scatter
         return tailed
 

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Effect of blur, tip and band limit of an instrument on a structure function."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import betainc, gammaincinv, hyp1f1
 from scipy.special import gamma as gamma_function
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray, read_only
 from jointbench.signal.surface.structure_constant import spectral_integral
 
 _ASYMPTOTIC_FROM = 40.0
@@ -135,7 +137,7 @@ def _missing_across(lag: FloatArray, exponent: float) -> FloatArray:
     are slow along it, the ones too fast across it are missing. The remaining share of
     the power at the angular frequency q is a regularised incomplete beta function.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE_NODES)
+    nodes, weights = _quadrature()
     q = np.pi * (nodes + 1) / 2
     cosine_square = q**2 / (np.pi**2 + q**2)
     lost = betainc((1 + exponent) / 2, 0.5, cosine_square)
@@ -144,6 +146,13 @@ def _missing_across(lag: FloatArray, exponent: float) -> FloatArray:
     near = lag < _QUADRATURE_LAGS
     missing[near] -= np.cos(np.outer(lag[near], q)) @ density
     return missing
+
+
+@cache
+def _quadrature() -> tuple[FloatArray, FloatArray]:
+    """Return nodes and weights between -1 and 1; finding them takes a millisecond."""
+    nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE_NODES)
+    return read_only(nodes), read_only(weights)
 
 
 def _exponential_integral(

@@ -21,6 +21,9 @@ _ROUNDING_TERMS = 6
 _WITHIN_ONE_STEP = 0.05
 """S over the square of the step below which no difference exceeds one step [-]."""
 
+_MANY_STEPS = 2.0
+"""S over the square of the step above which the series is 1/6 to the last digit [-]."""
+
 
 class InstrumentModel(StrEnum):
     """Effects of the instrument, from the simplest model upward."""
@@ -165,12 +168,20 @@ def _rounded(value: FloatArray, quantum: float) -> FloatArray:
         of a quantised Gaussian).
     """
     share = np.maximum(value, 0.0) / quantum**2
+    added = np.full(share.shape, 1 / 6)
+    few = share < _MANY_STEPS
+    if few.any():
+        added[few] = _fraction(share[few])
+    return np.asarray(value + quantum**2 * added)
+
+
+def _fraction(share: FloatArray) -> FloatArray:
+    """Return the mean of f (1 - f) for S over the square of the step."""
     order = np.arange(1.0, _ROUNDING_TERMS + 1)
     decay = np.exp(-2 * np.pi**2 * np.multiply.outer(share, order**2))
     fraction = 1 / 6 - np.sum(decay / (np.pi * order) ** 2, axis=-1)
     near = np.sqrt(2 * share / np.pi) - share  # all differences within one step
-    added: FloatArray = np.where(share < _WITHIN_ONE_STEP, near, fraction)
-    return value + quantum**2 * added
+    return np.where(share < _WITHIN_ONE_STEP, near, fraction)
 
 
 def rolled_off(shape: FloatArray, ceiling: float) -> FloatArray:

@@ -14,11 +14,12 @@ zero, so its steps widen away from them: exact near them, at a cost that grows o
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray, read_only
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.signal.surface.structure_function import Sampling, StructureFunction
 
@@ -31,6 +32,8 @@ EXACT_ROWS = 16
 """Single steps between rows [rows]."""
 ROW_GROWTH = 1.08
 """Ratio of neighbouring steps between rows beyond them [-]."""
+KEPT = 128
+"""Surfaces whose covariance is kept: a search comes back to them [-]."""
 
 Places = NDArray[np.uint32]
 """Indices without a sign: no check for a count from the end, half the memory."""
@@ -73,10 +76,13 @@ def structure_covariance(estimate: StructureFunction) -> Callable[[Seen], FloatA
 
     Returns:
         A function that takes a model of S (called with distances [m] of any shape)
-        and returns cov(S_a, S_b) / (S(a) S(b)), shape (n_lags, n_lags) [-].
+        and returns cov(S_a, S_b) / (S(a) S(b)), shape (n_lags, n_lags) [-],
+        read-only. The last ones are kept: a model that is equal to one of them gets
+        its covariance.
     """
     plans = [_plan(estimate.lag, sampling) for sampling in estimate.samplings]
 
+    @lru_cache(maxsize=KEPT)
     def covariance(seen: Seen) -> FloatArray:
         """Add up the covariances of the contact surfaces, each with its share of S."""
         value = seen(estimate.lag)
@@ -84,7 +90,7 @@ def structure_covariance(estimate: StructureFunction) -> Callable[[Seen], FloatA
         for sampling, plan in zip(estimate.samplings, plans, strict=True):
             own = _evaluate(plan, sampling.spacing, seen) / np.outer(value, value)
             total += sampling.share**2 * _for_gaps(own, sampling, estimate.lag)
-        return total
+        return read_only(total)
 
     return covariance
 
@@ -106,9 +112,10 @@ def _for_gaps(
 
 def _evaluate(plan: _Plan, spacing: float, seen: Seen) -> FloatArray:
     """Add up the squares of c over all distances between two differences."""
+    # All rows at once: a call of the model costs more than most of its points.
+    across = np.hypot(plan.distance, plan.row_distance[:, None])
     sums = np.zeros(plan.starts.size)
-    for across, weight in zip(plan.row_distance, plan.row_weight, strict=True):
-        values = seen(np.hypot(plan.distance, across) * spacing)
+    for values, weight in zip(seen(across * spacing), plan.row_weight, strict=True):
         sums += weight * _squares(values, plan.places, plan.weight, plan.starts)
     size = int(plan.second.max()) + 1
     covariance = np.empty((size, size))

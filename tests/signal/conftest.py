@@ -10,7 +10,8 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
-from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.signal.frf.frf import Frf, FrfKind, estimate_frf
+from jointbench.signal.modal.modes import ModalResult, identify_modes
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 
@@ -136,7 +137,7 @@ def hammered() -> Callable[..., Recording]:
     return make
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def real_hits() -> tuple[Recording, ...]:
     """Three hammer hits on a real structure, one a recording."""
     folder = SHARED / "hits"
@@ -155,6 +156,12 @@ def real_hits() -> tuple[Recording, ...]:
         )
         for i in (1, 2, 3)
     )
+
+
+@pytest.fixture(scope="session")
+def modes_of_real_hits(real_hits: tuple[Recording, ...]) -> ModalResult:
+    """The modes of the three real hits together; several tests judge them."""
+    return identify_modes(estimate_frf(real_hits))
 
 
 @pytest.fixture

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Catalogue v1, part 2: force laws of links, and nonlinear channels."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -116,17 +118,30 @@ def _saturation_report(v: FloatArray) -> tuple[Reported, ...]:
     return (Reported("amax", "unit of the channel", float(1.0 / max(v[0], 1e-12))),)
 
 
+@lru_cache(maxsize=16)
+def _line(step: float, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return cosine and sine of a line, shape (2, count), and their inner products.
+
+    Both are kept for calls in which the frequency stays; they are never written to.
+
+    Args:
+        step: phase between two samples [rad].
+        count: number of samples.
+    """
+    phase = step * np.arange(count)
+    line = np.stack([np.cos(phase), np.sin(phase)])
+    return line, line @ line.T
+
+
 def _hum(
     model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
 ) -> FloatArray:
     """Add a line whose phase is fitted in each record."""
     if v[0] == 0.0:
         return model
-    phase = 2 * np.pi * v[1] / rate * np.arange(model.shape[-1])
-    line = np.stack([np.cos(phase), np.sin(phase)])
+    line, gram = _line(float(2 * np.pi * v[1] / rate), model.shape[-1])
     found = np.linalg.solve(
-        line @ line.T,
-        line @ np.moveaxis(measured - model, -1, 0).reshape(phase.size, -1),
+        gram, line @ np.moveaxis(measured - model, -1, 0).reshape(line.shape[1], -1)
     )
     size = np.maximum(np.hypot(*found), 1e-300)
     return np.asarray(model + v[0] * ((found / size).T @ line).reshape(model.shape))

@@ -99,16 +99,30 @@ class LumpedResidual:
 
     def actions(self, terms: Sequence[Term]) -> list[Action]:
         """Return terms with the hooks of their entries."""
-        entries = {e.effect.name: e for e in (*self.entries, *PROBES)}
         return [
             Action(
-                entries[t.candidate.effect.name],
+                self.entry_of(t),
                 t.candidate.site.kind,
                 site_index(self.campaign.model, t.candidate.site),
                 values_of(self, t),
             )
             for t in terms
         ]
+
+    def entry_of(self, term: Term) -> LumpedEffect:
+        """Return the entry of a term's effect, with its hooks.
+
+        A fit asks thousands of times for one or two: they are looked for, without a
+        table of all of them each time.
+
+        Raises:
+            KeyError: no entry has that name.
+        """
+        name = term.candidate.effect.name
+        for entry in (*PROBES, *self.entries):
+            if entry.effect.name == name:
+                return entry
+        raise KeyError(name)
 
     def response(
         self, base: FloatArray, terms: Sequence[Term], oversampling: int = 8

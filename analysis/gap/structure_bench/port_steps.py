@@ -3,6 +3,7 @@
 
 Complex values are held as real and imaginary parts. Hits are the last axis, so that all
 of them are moved by the same instructions; only sliders are side by side themselves.
+Sums of arrays are loops: an expression of arrays takes half a second to compile.
 """
 
 import numpy as np
@@ -188,6 +189,64 @@ def _strike(
 
 
 @compiled(fastmath=True)
+def _add(share: float, d: FloatArray, to: FloatArray) -> None:
+    """Add a share of the forces of all ports, shape (n_ports, n_hits)."""
+    for p in range(d.shape[0]):
+        for h in range(d.shape[1]):
+            to[p, h] += share * d[p, h]
+
+
+@compiled(fastmath=True)
+def _follow(d: FloatArray, pair: FloatArray) -> None:
+    """Put the forces of the ports before those of the step before."""
+    n_ports = d.shape[0]
+    for p in range(n_ports):
+        for h in range(d.shape[1]):
+            pair[n_ports + p, h] = pair[p, h]
+            pair[p, h] = d[p, h]
+
+
+@compiled(fastmath=True)
+def _between(
+    force: FloatArray, at: tuple[int, int, int], f0: FloatArray, f1: FloatArray
+) -> None:
+    """Write the force before and after one part of a sample.
+
+    Args:
+        force: [N], shape (n_samples, n_hits).
+        at: sample, part of it, and parts of a sample.
+        f0: before the part (written), shape (n_hits,).
+        f1: after it (written), same shape.
+    """
+    t, part, parts = at
+    for h in range(f0.size):
+        rise = (force[t + 1, h] - force[t, h]) / parts
+        f0[h] = force[t, h] + part * rise
+        f1[h] = f0[h] + rise
+
+
+@compiled()
+def _depends_on_speed(kinds: IntArray) -> bool:
+    """Return whether a law depends on the velocity of its port."""
+    for kind in kinds:
+        if kind == 4:
+            return True
+    return False
+
+
+@compiled()
+def _last_force(force: FloatArray) -> int:
+    """Return the last sample with a force, 0 if there is none."""
+    end = int(force.shape[0]) - 1
+    while end > 0:
+        for h in range(force.shape[1]):
+            if force[end, h] != 0.0:
+                return end
+        end -= 1
+    return end
+
+
+@compiled(fastmath=True)
 def integrate_hits(
     steps: _Steps,
     ports: _Ports,
@@ -223,34 +282,30 @@ def integrate_hits(
     pair = np.zeros((2 * n_ports, n_hits))
     base, new = np.zeros((n_ports, n_hits)), np.zeros((n_ports, n_hits))
     drift, speed = np.zeros((n_ports, n_hits)), np.zeros((n_ports, n_hits))
-    moving = np.any(laws[0] == 4)
-    end = n_samples - 1
-    while end > 0 and not np.any(force[end]):
-        end -= 1
+    f0, f1 = np.zeros(n_hits), np.zeros(n_hits)
+    moving, end = _depends_on_speed(laws[0]), _last_force(force)
     for t in range(n_samples - 1):
         for part in range(parts):
-            pair[n_ports:] = pair[:n_ports]
-            pair[:n_ports] = d
+            _follow(d, pair)
             np.dot(drive, pair, added)
             _propagate(steps[0], added, x)
             if t <= end:
-                rise = (force[t + 1] - force[t]) / parts
-                f0 = force[t] + part * rise
-                _strike(steps, struck, (f0, f0 + rise), x)
+                _between(force, (t, part, parts), f0, f1)
+                _strike(steps, struck, (f0, f1), x)
             np.dot(shown, x, base)
             if moving:
                 np.dot(speeds, x, drift)
             for _ in range(corrections):
                 np.dot(instant[0], d, new)
-                new += base
+                _add(1.0, base, new)
                 if moving:
                     np.dot(instant[1], d, speed)
-                    speed += drift
+                    _add(1.0, drift, speed)
                 _port_forces(laws, scale, (old, new, speed), (first, last), d)
             first, last, old, new = last, first, new, old
             share = (part + 1) / parts
-            found[t + 1] += (share / parts) * d
-            found[t] += ((1.0 - share) / parts) * d
+            _add(share / parts, d, found[t + 1])
+            _add((1.0 - share) / parts, d, found[t])
         if asked > 0 and t > end and t % asked == 0:
             resting = True
             for h in range(n_hits):
@@ -259,6 +314,7 @@ def integrate_hits(
                     resting = False
                     break
             if resting:
-                found[t + 1] += 0.5 * (1.0 - 1.0 / parts) * d
-                found[t + 2 :] = d
+                _add(0.5 * (1.0 - 1.0 / parts), d, found[t + 1])
+                for later in range(t + 2, n_samples):
+                    _add(1.0, d, found[later])
                 break

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from jointbench.signal.frf.frf import Frf, estimate_frf
+from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.mode_ranking import Grade, rate_modes
-from jointbench.signal.modal.modes import ModalSettings, identify_modes
+from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
 
 
 @pytest.fixture
@@ -59,10 +59,10 @@ def test_few_orders_are_doubtful_and_a_broad_pole_is_never_sure(
 
 
 def test_the_strong_modes_of_real_hits_are_sure(
-    real_hits: tuple[Any, ...],
+    modes_of_real_hits: ModalResult,
 ) -> None:
     """The five that two independent fitters found rank among the upper half."""
-    result = identify_modes(estimate_frf(real_hits))
+    result = modes_of_real_hits
     found, rated = (
         result.model,
         rate_modes(result.model, result.stabilisation.orders.size),
