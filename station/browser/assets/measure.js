@@ -76,7 +76,9 @@ function show(fresh) {
 function showTask() {
   const now = task(state);
   say(letters, now.letters);
-  say(words, now.words);
+  if (state.ended) {
+    if (!words.querySelector("a")) fill(words, `${now.words} `, el("a", { href: "/poles", id: "to-poles" }, "Choose poles"));
+  } else say(words, now.words);
   order.className = `order ${now.tone}`;
 }
 

@@ -10,7 +10,11 @@ from typing import Any, TypeVar
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.browser.app.serve_screen import open_browser
 from jointbench.station.desk.desk_choice import ChoiceAction
-from jointbench.station.desk.desk_results import opened_desk, save_choices
+from jointbench.station.desk.desk_results import (
+    DeskConflict,
+    opened_desk,
+    save_choices,
+)
 from jointbench.station.desk.desk_state import (
     DeskState,
     decided,
@@ -30,7 +34,13 @@ Shown = TypeVar("Shown")
 
 
 class DeskBoard:
-    """States of the subjects; each is read when it is first asked for."""
+    """States of the subjects; each is read when it is first asked for.
+
+    Attributes:
+        subjects: to choose the modes of.
+        who: makes the choices.
+        waiting: why there is no subject yet, for people.
+    """
 
     def __init__(
         self, subjects: Sequence[DeskSubject], who: str, geometry: Path | None = None
@@ -42,9 +52,14 @@ class DeskBoard:
             who: makes the choices.
             geometry: for the report.
         """
-        self.subjects = tuple(subjects)
         self.who = who
+        self.waiting = ""
         self._geometry = geometry
+        self.lay_out(subjects)
+
+    def lay_out(self, subjects: Sequence[DeskSubject]) -> None:
+        """Lay subjects out in place of those before."""
+        self.subjects = tuple(subjects)
         self._states: dict[int, DeskState] = {}
         self._locks = [Lock() for _ in self.subjects]
 
@@ -111,7 +126,11 @@ class DeskBoard:
         self._require(number)
         with self._locks[number]:
             state = change(self._opened(number, None))
-            save_choices(state)
+            try:
+                save_choices(state)
+            except DeskConflict:
+                del self._states[number]  # the page shows what is written now
+                raise
             self._states[number] = state
             return state
 

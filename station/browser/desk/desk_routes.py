@@ -5,9 +5,11 @@ import json
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
-from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.acquisition.basics.errors import JointbenchError, UsageError
 from jointbench.station.browser.app.screen_part import ScreenPage, ScreenPart
 from jointbench.station.browser.desk.desk_board import DeskBoard
+from jointbench.station.browser.guard.open_screens import OpenScreens
+from jointbench.station.browser.guard.request_body import short_body
 from jointbench.station.desk.desk_findings import findings_beside
 from jointbench.station.desk.desk_pages import (
     curves_page,
@@ -34,8 +36,6 @@ DESK_PAGES = tuple(
         ("report", "Report", "report"),
     )
 )
-_MOST = 4096
-"""Of a choice [bytes]."""
 _PAGES: dict[str, Callable[[DeskState], Any]] = {
     "summary": summary_page,
     "diagram": diagram_page,
@@ -47,20 +47,24 @@ _PAGES: dict[str, Callable[[DeskState], Any]] = {
 Endpoint = Callable[["Request"], Awaitable["Response"]]
 
 
-def desk_part(board: DeskBoard) -> ScreenPart:
+def desk_part(board: DeskBoard, screens: OpenScreens | None = None) -> ScreenPart:
     """Return the screens of the modal desk.
 
     Args:
         board: subjects and their states.
+        screens: counts those that are open.
     """
-    from starlette.responses import JSONResponse
-    from starlette.routing import Route
+    from starlette.routing import Route, WebSocketRoute
 
-    async def subjects(request: "Request") -> "Response":
+    def subjects(request: "Request") -> Any:
         titles = [one.title for one in board.subjects]
-        return JSONResponse({"titles": titles, "who": board.who})
+        return {"titles": titles, "who": board.who, "waiting": board.waiting}
 
-    routes: list[BaseRoute] = [Route("/desk/subjects", subjects)]
+    held = screens or OpenScreens()
+    routes: list[BaseRoute] = [
+        Route("/desk/subjects", _get(subjects)),
+        WebSocketRoute("/desk/open", held.hold),
+    ]
     for path, make in _answers(board).items():
         routes.append(Route(path, _get(make)))
     for path, take in _orders(board).items():
@@ -151,9 +155,10 @@ def _post(take: Callable[[int, dict[str, Any]], Any]) -> Endpoint:
     from starlette.responses import JSONResponse, PlainTextResponse
 
     async def answer(request: "Request") -> "Response":
-        body = await request.body()
-        if len(body) > _MOST:
-            return PlainTextResponse("the choice is too long", 413)
+        try:
+            body = await short_body(request)
+        except UsageError as error:
+            return PlainTextResponse(str(error), 413)
         try:
             asked = json.loads(body or b"{}")
             if not isinstance(asked, dict):

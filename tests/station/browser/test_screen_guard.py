@@ -40,7 +40,7 @@ def ask(
 
 def cookie(screen: Served) -> dict[str, str]:
     """Return the header of a browser that has opened the link."""
-    return {"Cookie": f"{screen.access.cookie}={screen.access.token}"}
+    return {"Cookie": f"{screen.access.cookie}={screen.access.admission}"}
 
 
 def own(screen: Served) -> dict[str, str]:
