@@ -82,8 +82,8 @@ def _require_followed(stored: Sequence[DeskChoice], log: Sequence[DeskChoice]) -
     last = stored[-1]
     raise DeskConflict(
         f"another desk has chosen meanwhile ({last.when} {visible(last.who)} "
-        f"{visible(last.words())}); this choice was not made: look at the modes as they "
-        "are now, and choose again"
+        f"{visible(last.words())}); this choice was not made: look at the modes "
+        "as they are now, and choose again"
     )
 
 

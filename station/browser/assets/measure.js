@@ -44,7 +44,7 @@ fill(
   el("section", { class: "panel progress", "aria-label": "Progress" }, counts, bar),
   bars, answer,
   el("div", { class: "row" }, channels, sound),
-  el("div", { class: "grid" }, plots.pulseBox, plots.spectrumBox, plots.responseBox, plots.frfBox, plots.coherenceBox, scopeBox),
+  el("div", { class: "grid" }, plots.pulseBox, plots.spectrumBox, plots.responseBox, plots.frfBox, plots.phaseBox, plots.coherenceBox, scopeBox),
   points,
 );
 plots.build(curvePlot);

@@ -9,12 +9,14 @@ import signal
 import socket
 import threading
 from collections.abc import Mapping
+from contextlib import suppress
 from itertools import count
 from multiprocessing.connection import Connection
 from typing import Any
 
 from jointbench.station.browser.app.serve_screen import screen_server
 from jointbench.station.browser.bench.bench_routes import bench_part
+from jointbench.station.browser.bench.desk_after_session import DeskAfterSession
 from jointbench.station.browser.bench.screen_link import (
     Finished,
     Relinked,
@@ -23,9 +25,7 @@ from jointbench.station.browser.bench.screen_link import (
     Taken,
     Watched,
 )
-from jointbench.station.browser.bench.session_desk import SessionDesk
 from jointbench.station.browser.bench.session_feed import SessionFeed
-from jointbench.station.browser.desk.desk_routes import desk_part
 from jointbench.station.browser.guard.open_screens import OpenScreens
 from jointbench.station.browser.guard.screen_access import ScreenAccess
 
@@ -49,18 +49,23 @@ def run_bench_server(
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     desk = _CommandDesk(link, SessionFeed(serving.session))
-    screens = OpenScreens(lambda count: link.send(Watched(count)))
-    after = SessionDesk(serving.places)
+
+    def tell(news: object) -> None:
+        with suppress(OSError):  # the measuring program has ended
+            link.send(news)
+
+    screens = OpenScreens(lambda count: tell(Watched(count)))
+    after = DeskAfterSession(serving.places, screens)
     if serving.finished:
         after.finished(serving.session)
     parts = (
         bench_part(desk.feed, desk.submit, screens, serving.geometry),
-        desk_part(after.board, screens),
+        after.part(),
     )
     access = ScreenAccess(
         serving.port, token=serving.token, admission=serving.admission
     )
-    access.relinked = lambda token: link.send(Relinked(token))
+    access.relinked = lambda token: tell(Relinked(token))
     server = screen_server(parts, access)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()

@@ -8,7 +8,6 @@ from threading import Lock
 from typing import Any, TypeVar
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.station.browser.app.serve_screen import open_browser
 from jointbench.station.desk.desk_choice import ChoiceAction
 from jointbench.station.desk.desk_results import (
     DeskConflict,
@@ -39,11 +38,16 @@ class DeskBoard:
     Attributes:
         subjects: to choose the modes of.
         who: makes the choices.
-        waiting: why there is no subject yet, for people.
+        waiting: why there is no subject, for people.
     """
 
     def __init__(
-        self, subjects: Sequence[DeskSubject], who: str, geometry: Path | None = None
+        self,
+        subjects: Sequence[DeskSubject],
+        who: str,
+        geometry: Path | None = None,
+        *,
+        waiting: str = "",
     ) -> None:
         """Lay subjects out.
 
@@ -51,15 +55,11 @@ class DeskBoard:
             subjects: to choose the modes of.
             who: makes the choices.
             geometry: for the report.
+            waiting: why there is no subject, for people.
         """
-        self.who = who
-        self.waiting = ""
-        self._geometry = geometry
-        self.lay_out(subjects)
-
-    def lay_out(self, subjects: Sequence[DeskSubject]) -> None:
-        """Lay subjects out in place of those before."""
         self.subjects = tuple(subjects)
+        self.who, self.waiting = who, waiting
+        self._geometry = geometry
         self._states: dict[int, DeskState] = {}
         self._locks = [Lock() for _ in self.subjects]
 
@@ -115,10 +115,10 @@ class DeskBoard:
         write_report(page, target)
         return target
 
-    def open_report(self, number: int) -> bool:
-        """Open the report in the browser of this computer."""
+    def report_text(self, number: int) -> bytes | None:
+        """Return the report of a subject as it was written; None without one."""
         target = report_path(self.state(number).subject.files[0])
-        return target.is_file() and open_browser(target.resolve().as_uri())
+        return target.read_bytes() if target.is_file() else None
 
     def _changed(
         self, number: int, change: Callable[[DeskState], DeskState]

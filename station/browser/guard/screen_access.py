@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Who may see a screen: a browser that came by a link with a token, on this computer."""
+"""Who may see a screen: a browser of this computer that came by a link."""
 
 import secrets
 from collections.abc import Callable

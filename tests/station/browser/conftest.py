@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from bench_runs import CHROMIUM_FLAGS
 
 from jointbench.station.browser.app.screen_part import ScreenPage, ScreenPart
 from jointbench.station.browser.app.serve_screen import loopback_socket, screen_server
@@ -17,16 +18,6 @@ from jointbench.station.browser.guard.screen_access import ScreenAccess
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-# Without a sandbox, as root in a container needs it, and without requests of its own.
-CHROMIUM_FLAGS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
 PAGE = ScreenPage("/measure", "Measure", "measure.js")
 
 
