@@ -122,12 +122,13 @@ function showProgress() {
   const good = state.conditions.reduce((/** @type {number} */ n, /** @type {any} */ c) => n + Math.min(c.good, c.wanted), 0);
   const wanted = state.conditions.reduce((/** @type {number} */ n, /** @type {any} */ c) => n + c.wanted, 0);
   const left = state.conditions.reduce((/** @type {number} */ n, /** @type {any} */ c) => n + c.left, 0);
+  const whole = state.conditions.filter((/** @type {any} */ c) => c.left === 0).length;
   bar.setAttribute("value", String(wanted ? good / wanted : 0));
   const elapsed = state.first_time === null ? 0 : state.now - state.first_time;
   const rows = [
     ["here", here ? `${here.good} of ${here.wanted}` : "–"],
     ["hits left", left],
-    ["points done", `${state.done} of ${state.planned}`],
+    ["points done", `${whole} of ${state.planned}`],
     ["elapsed", clock(elapsed)],
     ["time left", state.ended ? "–" : state.seconds_left === null ? "after the first hit" : `about ${clock(state.seconds_left)}`],
     ["rejected", state.struck - (state.verdicts.ok ?? 0) - trials()],

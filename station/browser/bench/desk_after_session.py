@@ -6,7 +6,7 @@ What fits poles is loaded then: the screen of a session has to be there at once.
 
 import getpass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.station.browser.app.screen_part import ScreenPart
@@ -69,7 +69,7 @@ class DeskAfterSession:
             return PlainTextResponse(_MEASURED, 400)
         if self._app is None:
             self._app = await run_in_threadpool(self._desk, self._session)
-        return _Passed(self._app)
+        return cast("Response", _Passed(self._app))
 
     def _desk(self, session: Path) -> "ASGIApp":
         from starlette.applications import Starlette

@@ -25,7 +25,6 @@ from bench_runs import (
 from jointbench.acquisition.records.recordings import Verdict
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.desk.desk_choice import choices_of
-from jointbench.station.results.results_file import results_path
 from jointbench.station.results.results_modes import read_run
 
 if TYPE_CHECKING:
@@ -189,8 +188,9 @@ def reported(page: "Page", folder: Path) -> None:
     with page.context.expect_page() as other:
         page.get_by_role("link", name="Open it").press("Enter")
     other.value.locator("h1").first.wait_for()
-    assert "12 " in other.value.locator("body").inner_text()
-    choices = choices_of(read_run(results_path(folder / "s.h5")).modes[0].steps)
+    results = next(folder.glob("s.*N.results.h5"))
+    assert results.name in other.value.locator("body").inner_text()
+    choices = choices_of(read_run(results).modes[0].steps)
     assert [one.action for one in choices] == ["pin"]
 
 
