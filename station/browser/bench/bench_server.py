@@ -18,9 +18,9 @@ from jointbench.station.browser.app.serve_screen import screen_server
 from jointbench.station.browser.bench.bench_routes import bench_part
 from jointbench.station.browser.bench.desk_after_session import DeskAfterSession
 from jointbench.station.browser.bench.screen_link import (
-    Finished,
     Relinked,
     Serving,
+    SessionFinished,
     Submitted,
     Taken,
     Watched,
@@ -73,7 +73,7 @@ def run_bench_server(
         while thread.is_alive():
             if link.poll(_LOOK):
                 news = link.recv()
-                if isinstance(news, Finished):
+                if isinstance(news, SessionFinished):
                     after.finished(news.session)
                 else:
                     desk.take(news)

@@ -31,7 +31,7 @@ class Serving:
 
 
 @dataclass(frozen=True, slots=True)
-class Finished:
+class SessionFinished:
     """To the server: the file of the session is whole.
 
     Attributes:

@@ -18,9 +18,9 @@ from jointbench.acquisition.basics.errors import FormatError
 from jointbench.station.browser.app.serve_screen import loopback_socket
 from jointbench.station.browser.bench.bench_server import run_bench_server
 from jointbench.station.browser.bench.screen_link import (
-    Finished,
     Relinked,
     Serving,
+    SessionFinished,
     Submitted,
     Taken,
     Watched,
@@ -109,7 +109,7 @@ class ScreenProcess:
         self._serving = replace(self._serving, session=session, finished=True)
         with suppress(OSError):
             if self._link is not None:
-                self._link.send(Finished(session))
+                self._link.send(SessionFinished(session))
 
     def linger(self) -> None:
         """Return once no screen has been open for some seconds, or on Ctrl-C."""
