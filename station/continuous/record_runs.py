@@ -37,7 +37,7 @@ from jointbench.station.files.session_place import check_session_name, session_p
 from jointbench.station.measure.chassis import OpenChassis, open_chassis
 from jointbench.station.measure.session_desk import SessionDesk
 from jointbench.station.measure.session_log import gap_words
-from jointbench.station.measure.teds_checks import teds_warnings
+from jointbench.station.measure.teds_checks import teds_serials, teds_warnings
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
 from jointbench.station.session_events.command_mailbox import CommandMailbox
@@ -248,7 +248,7 @@ def _warnings(plan: RecordPlan, opened: OpenChassis) -> Iterator[str]:
         words = calibration_warning(sensor, today)
         if words is not None:
             yield words
-    yield from teds_warnings(opened.chassis, plan.sensors)
+    yield from teds_warnings(teds_serials(opened.chassis, plan.sensors), plan.sensors)
 
 
 def _meta(plan: RecordPlan, opened: OpenChassis, rate: float) -> dict[str, object]:

@@ -2,6 +2,7 @@
 """What is known of the joint: identification and diagnosis beside a session."""
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -72,7 +73,9 @@ def _of_file(path: Path, stem: str) -> Iterator[Findings]:
             texts = list(result_texts(path).values())
         for text in texts:
             require_short_json(text)
-            content = json.loads(text)
+            content = json.loads(
+                text, parse_constant=lambda _: None, parse_float=_finite
+            )
             kind = _kind(content)
             if kind:
                 yield Findings(kind, path.name, own, content)
@@ -80,9 +83,27 @@ def _of_file(path: Path, stem: str) -> Iterator[Findings]:
         return
 
 
+def _finite(text: str) -> float | None:
+    """Return a number of a file; None for one that JSON cannot carry to a page."""
+    value = float(text)
+    return value if math.isfinite(value) else None
+
+
 def _kind(content: object) -> str:
+    """Return what a file is; ``""`` for another one, or one with other types."""
     if not isinstance(content, dict):
         return ""
     if all(name in content for name in _IS_GAP):
-        return "gap"
-    return "joint" if all(name in content for name in _IS_JOINT) else ""
+        effects = content["effects"]
+        whole = isinstance(effects, list) and all(
+            isinstance(one, dict) and _is_table(one.get("parameters"))
+            for one in effects
+        )
+        return "gap" if whole else ""
+    if all(name in content for name in _IS_JOINT):
+        return "joint" if _is_table(content["parameters"]) else ""
+    return ""
+
+
+def _is_table(value: object) -> bool:
+    return isinstance(value, dict) and all(isinstance(v, dict) for v in value.values())

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.station.desk.desk_choice import DeskChoice, choices_of
@@ -16,6 +18,10 @@ from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.results.results_file import results_path, write_results
 from jointbench.station.results.results_modes import StoredModes, read_run
+
+
+class DeskConflict(UsageError):
+    """Another desk has changed the choices of the same session."""
 
 
 def opened_desk(subject: DeskSubject, run: StageRun | None = None) -> DeskState:
@@ -48,14 +54,37 @@ def save_choices(state: DeskState) -> Path | None:
 
     Raises:
         UsageError: it cannot be written there.
+        DeskConflict: another desk has chosen meanwhile; nothing is written.
     """
     if not state.log and not state.chain.amplitude:
         return None
     target = state.subject.results
-    if len(state.log) == 1 and _stored(state.subject) is None:
-        set_aside(target)  # choices on an earlier content of the file
-    write_results(target, state.chain, state.subject.files)
+    with locked(target):
+        stored = _stored(state.subject)
+        if stored is None:
+            if len(state.log) == 1:
+                set_aside(target)  # choices on an earlier content of the file
+        else:
+            _require_followed(choices_of(stored.steps), state.log)
+        write_results(target, state.chain, state.subject.files)
     return target
+
+
+def _require_followed(stored: Sequence[DeskChoice], log: Sequence[DeskChoice]) -> None:
+    """Do nothing where a log continues the stored one.
+
+    Raises:
+        DeskConflict: another desk has chosen meanwhile.
+    """
+    marks = [(one.when, one.who, one.action) for one in stored]
+    if marks == [(one.when, one.who, one.action) for one in log[: len(marks)]]:
+        return
+    last = stored[-1]
+    raise DeskConflict(
+        f"another desk has chosen meanwhile ({last.when} {visible(last.who)} "
+        f"{visible(last.words())}); this choice was not made: look at the modes "
+        "as they are now, and choose again"
+    )
 
 
 def chosen_at_desk(files: Sequence[Path]) -> ModalChain | None:

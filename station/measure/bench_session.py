@@ -3,7 +3,7 @@
 
 import uuid
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -50,7 +50,13 @@ from jointbench.station.measure.session_desk import SessionDesk
 from jointbench.station.measure.session_engine import MeasureSession
 from jointbench.station.measure.session_log import session_begun
 from jointbench.station.measure.session_record import Record
-from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
+from jointbench.station.measure.teds_checks import (
+    NO_TRIGGER,
+    by_device,
+    teds_serials,
+    teds_warnings,
+    teds_words,
+)
 from jointbench.station.screen.interrupt import patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
 from jointbench.station.session_events.command_mailbox import CommandMailbox
@@ -165,7 +171,8 @@ def measure(
     """
     limits = opened.chassis.limits()
     require_capable(plan.sensors, limits, plan.acquisition.sample_rate)
-    warnings = _warnings(plan, opened)
+    serials = teds_serials(opened.chassis, plan.sensors)
+    warnings = _warnings(plan, opened, serials)
     record = Record()
     with patient_interrupt(record):
         try:
@@ -178,7 +185,7 @@ def measure(
                     commands or CommandQueue(),
                     mailbox=CommandMailbox(out),
                 )
-                _record(plan, opened, out, (desk, warnings, record))
+                _record(plan, opened, out, (desk, warnings, record), serials)
         except BaseException:
             # What went wrong first is what the operator has to know.
             with suppress(JointbenchError):
@@ -224,6 +231,7 @@ def _record(
     opened: OpenChassis,
     out: Path,
     running: tuple[SessionDesk, tuple[str, ...], Record],
+    serials: Mapping[str, str | None],
 ) -> None:
     desk, warnings, record = running
     recorder = desk.recorder
@@ -250,6 +258,7 @@ def _record(
                     source=opened.name,
                     simulated=opened.simulated,
                     sample_rate=recorder.sample_rate,
+                    teds=teds_words(serials, plan.sensors),
                 )
             )
             for sensor in plan.sensors:
@@ -278,7 +287,9 @@ def _torque_tester(plan: MeasurePlan) -> Iterator[BoltWatch | None]:
         yield BoltWatch(table=torque, line=name, bolts=joint.bolts, wait=plan.hits.wait)
 
 
-def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:
+def _warnings(
+    plan: MeasurePlan, opened: OpenChassis, serials: Mapping[str, str | None]
+) -> tuple[str, ...]:
     today = datetime.now(UTC).date()
     old = (calibration_warning(sensor, today) for sensor in plan.sensors)
     expired = (words for words in old if words is not None)
@@ -286,7 +297,7 @@ def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:
     trigger = asked and not by_device(plan, opened.chassis)
     return (
         *expired,
-        *teds_warnings(opened.chassis, plan.sensors),
+        *teds_warnings(serials, plan.sensors),
         *((NO_TRIGGER,) if trigger else ()),
     )
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.records.recordings import Channel, Quantity
 from jointbench.signal.frf.frf import Frf
 from jointbench.station.measure.running_average import mean_coherence
@@ -61,10 +61,11 @@ def _with_frf(
     low, high = frf.usable_band or (float(frf.frequency[0]), float(frf.frequency[-1]))
     inside = (frf.frequency >= low) & (frf.frequency <= high)
     names = [c.name for c in channels if c.quantity.is_motion]
-    curves, coherences = {}, {}
+    curves, phases, coherences = {}, {}, {}
     for row, name in enumerate(names):
         size = 20 * np.log10(np.abs(frf.response[row, 0, inside]) + 1e-12)
         curves[name] = _rounded(_in_steps(size, _STEPS, np.max), 1)
+        phases[name] = _phase(frf.response[row, 0, inside], _STEPS)
         if frf.coherence is not None:
             values = frf.coherence[row, 0, inside]
             coherences[name] = _rounded(_in_steps(values, _STEPS, np.min), 3)
@@ -77,9 +78,19 @@ def _with_frf(
         pulse_time=sketch.pulse_time,
         band=[float(low), float(high)],
         frf=curves,
+        phase=phases,
         coherence=coherences,
         mean_coherence=mean_coherence(frf),
     )
+
+
+def _phase(response: ComplexArray, steps: int) -> list[float]:
+    """Return the phase where the magnitude is largest within each step [deg]."""
+    if response.size == 0:
+        return []
+    edges = np.linspace(0, response.size, min(steps, response.size) + 1).astype(int)
+    peaks = [a + int(np.argmax(np.abs(response[a:b]))) for a, b in pairwise(edges)]
+    return _rounded(np.degrees(np.angle(response[peaks])).tolist(), 0)
 
 
 def _in_steps(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Events of a measurement, made from its records."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from jointbench.acquisition.ni.stream import StreamGap
 from jointbench.acquisition.records.recordings import Channel, Hit, Quantity
@@ -47,6 +47,7 @@ def session_begun(
     source: str,
     simulated: bool,
     sample_rate: float,
+    teds: Mapping[str, str],
 ) -> SessionBegun:
     """Return the event that states what is known before the first sample.
 
@@ -56,6 +57,7 @@ def session_begun(
         source: URL of the chassis.
         simulated: whether it is a simulation.
         sample_rate: of the device [Hz].
+        teds: what the sensor of each channel says of itself, for people.
     """
     hammer = next(c for c in channels if c.quantity is Quantity.FORCE)
     return SessionBegun(
@@ -65,7 +67,10 @@ def session_begun(
         sample_rate=sample_rate,
         direction=hammer.direction,
         repeats=plan.hits.repeats,
-        channels=[{"name": c.name, "range": c.range} for c in channels],
+        channels=[
+            {"name": c.name, "range": c.range, "teds": teds.get(c.name, "")}
+            for c in channels
+        ],
         conditions=[
             {"name": c.name, "point": c.point, "torque": c.torque, "level": c.level}
             for c in conditions(plan)

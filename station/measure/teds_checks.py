@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What chassis and sensors say of themselves against what plan and table say."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.sensors import Sensor, channel_name
@@ -29,31 +29,64 @@ def by_device(plan: MeasurePlan, chassis: Chassis) -> bool:
     return all(m.analogue_trigger for m in chassis.modules() if m.name in used)
 
 
-def teds_warnings(chassis: Chassis, sensors: Sequence[Sensor]) -> tuple[str, ...]:
-    """Compare the serial number of every sensor that has a TEDS with the table.
+def teds_serials(chassis: Chassis, sensors: Sequence[Sensor]) -> dict[str, str | None]:
+    """Return the serial number that each channel's sensor says itself, None without.
 
     Args:
         chassis: an open one.
         sensors: the channel table.
 
-    Returns:
-        One line for each that differs; a sensor without a TEDS is taken at its word.
-
     Raises:
         InstrumentError: an input does not exist, or the device does not answer.
     """
-    return tuple(_warnings(chassis, sensors))
+    found = {
+        channel_name(sensor, axis): chassis.teds(axis.physical)
+        for sensor in sensors
+        for axis in sensor.axes
+    }
+    return {
+        name: None if one is None else str(one.serial) for name, one in found.items()
+    }
 
 
-def _warnings(chassis: Chassis, sensors: Sequence[Sensor]) -> Iterator[str]:
+def teds_words(
+    serials: Mapping[str, str | None], sensors: Sequence[Sensor]
+) -> dict[str, str]:
+    """Return what the TEDS of each channel says against the table, for people."""
+    words = {}
     for sensor in sensors:
-        if not sensor.serial:
-            continue
         for axis in sensor.axes:
-            found = chassis.teds(axis.physical)
-            if found is not None and str(found.serial) != sensor.serial:
-                yield (
-                    f"channel {channel_name(sensor, axis)!r}: the sensor at "
-                    f"{axis.physical} says serial number {found.serial}, the table "
-                    f"says {sensor.serial}; check the plug or the table"
-                )
+            name = channel_name(sensor, axis)
+            found = serials[name]
+            if found is None:
+                words[name] = "no TEDS"
+            elif not sensor.serial:
+                words[name] = f"TEDS {found}, not in the table"
+            elif found == sensor.serial:
+                words[name] = "TEDS as in the table"
+            else:
+                words[name] = f"TEDS {found}: another sensor"
+    return words
+
+
+def teds_warnings(
+    serials: Mapping[str, str | None], sensors: Sequence[Sensor]
+) -> tuple[str, ...]:
+    """Compare the serial number of every sensor that has a TEDS with the table.
+
+    Args:
+        serials: what the sensors say, by channel, as `teds_serials` reads it.
+        sensors: the channel table.
+
+    Returns:
+        One line for each that differs; a sensor without a TEDS is taken at its word.
+    """
+    return tuple(
+        f"channel {channel_name(sensor, axis)!r}: the sensor at {axis.physical} says "
+        f"serial number {found}, the table says {sensor.serial}; check the plug or the "
+        "table"
+        for sensor in sensors
+        if sensor.serial
+        for axis in sensor.axes
+        if (found := serials[channel_name(sensor, axis)]) not in (None, sensor.serial)
+    )

@@ -45,6 +45,7 @@ class HitAveraged:
         pulse_time: duration of the pulse that is drawn [s].
         band: lowest and highest frequency of the FRF [Hz]; empty without one.
         frf: magnitude of each response at equal steps of frequency [dB].
+        phase: of each response where its magnitude is largest within each step [deg].
         coherence: of each response, the lowest within each step [-].
         mean_coherence: over band and responses [-], None with fewer than two hits.
     """
@@ -60,6 +61,7 @@ class HitAveraged:
     frf: dict[str, list[float]] = field(default_factory=dict)
     coherence: dict[str, list[float]] = field(default_factory=dict)
     mean_coherence: float | None = None
+    phase: dict[str, list[float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,8 +35,11 @@ def loopback_socket(port: int = 0) -> socket.socket:
     if not 0 <= port <= _MOST_PORTS:
         raise UsageError(f"port {port} is none; give 0 to {_MOST_PORTS}")
     opened = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-    # A server that is started again takes its port back at once.
-    opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    # A server that is started again takes its port back at once. Windows needs nothing
+    # for this; there SO_REUSEADDR would let another program take the port over.
+    exclusive = getattr(socket, "SO_EXCLUSIVEADDRUSE", None)
+    option = socket.SO_REUSEADDR if exclusive is None else exclusive
+    opened.setsockopt(socket.SOL_SOCKET, option, 1)
     try:
         opened.bind((LOOPBACK, port))
     except OSError as error:
@@ -102,6 +105,7 @@ def serve_screen(
     with loopback_socket(port) as opened:
         access = ScreenAccess(opened.getsockname()[1])
         say(f"screen: {access.link()}")
+        access.relinked = lambda _: say(f"link for another browser: {access.link()}")
         if browser:
             open_browser(access.link())
         with suppress(KeyboardInterrupt):

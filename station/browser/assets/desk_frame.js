@@ -2,7 +2,7 @@
 /** What all screens of the desk share: which session, its title, undo, messages. */
 
 import { announce, byId, el, fill, say, typesInField } from "./dom.js";
-import { json } from "./link.js";
+import { json, liveLink } from "./link.js";
 
 /**
  * @typedef {object} Mode
@@ -59,7 +59,12 @@ export async function deskScreen(title, build) {
   const message = el("p", { class: "desk-message", role: "status" });
   const place = el("div", { class: "desk-place" });
   try {
-    const { titles, who } = await json("/desk/subjects");
+    const gone = el("p", { class: "trouble", role: "alert" },
+      "No connection to the program: it has ended, or the computer slept. Choices are kept in the results.");
+    gone.hidden = true;
+    main.before(gone);
+    liveLink("/desk/open", { open: (open) => { gone.hidden = open; } });
+    const { titles, who } = await subjects(main);
     const asked = Number(new URLSearchParams(location.search).get("n") ?? 0);
     const number = Number.isInteger(asked) && asked >= 0 && asked < titles.length ? asked : 0;
     carryOn(number);
@@ -85,6 +90,10 @@ export async function deskScreen(title, build) {
           desk.summary = await json(`/desk/${number}/choose`, what);
         } catch (error) {
           desk.tell(/** @type {Error} */ (error).message, true);
+          announce(/** @type {Error} */ (error).message);
+          // Another desk may have chosen: show what is there.
+          desk.summary = await json(`/desk/${number}/summary`);
+          await refresh();
           return false;
         }
         const took = ((performance.now() - begun) / 1000).toFixed(2);
@@ -130,6 +139,21 @@ export async function deskScreen(title, build) {
     });
   } catch (error) {
     fill(main, el("p", { class: "trouble", role: "alert" }, /** @type {Error} */ (error).message));
+  }
+}
+
+/**
+ * Return what lies on the desk; a session that is still measured is waited for.
+ * @param {Element} main
+ * @returns {Promise<{titles: string[], who: string}>}
+ */
+async function subjects(main) {
+  for (;;) {
+    const found = await json("/desk/subjects");
+    if (found.titles.length) return found;
+    const words = el("p", { class: "waiting", role: "status" }, found.waiting);
+    if (main.textContent !== found.waiting) fill(main, words);
+    await new Promise((done) => { setTimeout(done, 1000); });
   }
 }
 

@@ -19,6 +19,7 @@ export class HitPlots {
     this.spectrumBox = box("Force spectrum re its maximum");
     this.responseBox = box("Response");
     this.frfBox = box("FRF");
+    this.phaseBox = box("Phase");
     this.coherenceBox = box("Coherence");
     /** @type {Record<string, import("./curves.js").CurvePlot>} */
     this.plots = {};
@@ -32,6 +33,7 @@ export class HitPlots {
       spectrum: make(plotOf(this.spectrumBox), { x: "frequency [Hz]", y: "force [dB]", yRange: [-60, 3], curves: one("force"), label: "Force spectra of the hits at this point" }),
       response: make(plotOf(this.responseBox), { x: "time after the trigger [ms]", y: "response", curves: one("response"), label: "Responses to the hits at this point over time" }),
       frf: make(plotOf(this.frfBox), { x: "frequency [Hz]", y: "FRF [dB re 1 SI unit]", curves: one("FRF"), label: "Magnitude of the averaged FRF" }),
+      phase: make(plotOf(this.phaseBox), { x: "frequency [Hz]", y: "phase [deg]", yRange: [-185, 185], curves: one("phase"), label: "Phase of the averaged FRF" }),
       coherence: make(plotOf(this.coherenceBox), { x: "frequency [Hz]", y: "coherence [-]", yRange: [0, 1.02], curves: one("coherence"), label: "Coherence of the averaged FRF" }),
     };
   }
@@ -50,6 +52,10 @@ export class HitPlots {
     title(this.coherenceBox, name ? `Coherence of ${name}${mean == null ? "" : `, mean over band and channels ${shown(mean, 3)}`}` : "Coherence");
     const [low, high] = average?.band?.length ? average.band : [0, 1];
     this.plots.frf.show([steps(low, high, curve.length), curve]);
+    const phase = average?.phase?.[name] ?? [];
+    title(this.phaseBox, name ? `Phase of ${name}` : "Phase");
+    this.plots.phase.show([steps(low, high, phase.length), phase]);
+    empty(this.phaseBox, phase.length === 0, "after the first good hit");
     this.plots.coherence.show([steps(low, high, coherence.length), coherence]);
     empty(this.frfBox, curve.length === 0, "after the first good hit");
     empty(this.coherenceBox, coherence.length === 0, "from two good hits on");

@@ -81,7 +81,7 @@ function modesPart(modes) {
     el("thead", {}, el("tr", {}, ...["measured [Hz]", "model [Hz]", "difference [%]"].map((one) => el("th", {}, one)))),
     el("tbody", {}, ...modes.map((one) => el("tr", {},
       el("td", {}, shown(one.measured_hz, 6)), el("td", {}, shown(one.predicted_hz, 6)),
-      el("td", {}, (100 * (one.predicted_hz / one.measured_hz - 1)).toFixed(3).replace(/^-(0\.0+)$/, "$1")))))));
+      el("td", {}, (100 * (one.predicted_hz / one.measured_hz - 1) || 0).toFixed(3).replace(/^-(0\.0+)$/, "$1")))))));
 }
 
 /** @param {any} found */
@@ -107,10 +107,11 @@ function gapPart(found) {
 
 /** @param {any} content */
 function beforeAfter(content) {
-  const largest = Math.max(content.gap_before, content.gap_after, 1e-12);
+  const size = (/** @type {any} */ value) => (Number.isFinite(value) ? value : 0);
+  const largest = Math.max(size(content.gap_before), size(content.gap_after), 1e-12);
   const bar = (/** @type {string} */ name, /** @type {number} */ value) => el("tr", {},
     el("th", { class: "words", scope: "row" }, name),
-    el("td", { class: "words wide" }, el("meter", { min: 0, max: largest, value, "aria-label": `Gap ${name}` })),
+    el("td", { class: "words wide" }, el("meter", { min: 0, max: largest, value: size(value), "aria-label": `Gap ${name}` })),
     el("td", {}, shown(value, 3)));
   return el("table", { class: "gap-bars" },
     el("caption", {}, "Gap between model and measurement, on held-out records."),

@@ -44,7 +44,7 @@ fill(
   el("section", { class: "panel progress", "aria-label": "Progress" }, counts, bar),
   bars, answer,
   el("div", { class: "row" }, channels, sound),
-  el("div", { class: "grid" }, plots.pulseBox, plots.spectrumBox, plots.responseBox, plots.frfBox, plots.coherenceBox, scopeBox),
+  el("div", { class: "grid" }, plots.pulseBox, plots.spectrumBox, plots.responseBox, plots.frfBox, plots.phaseBox, plots.coherenceBox, scopeBox),
   points,
 );
 plots.build(curvePlot);
@@ -76,7 +76,9 @@ function show(fresh) {
 function showTask() {
   const now = task(state);
   say(letters, now.letters);
-  say(words, now.words);
+  if (state.ended) {
+    if (!words.querySelector("a")) fill(words, `${now.words} `, el("a", { href: "/poles", id: "to-poles" }, "Choose poles"));
+  } else say(words, now.words);
   order.className = `order ${now.tone}`;
 }
 
@@ -120,12 +122,13 @@ function showProgress() {
   const good = state.conditions.reduce((/** @type {number} */ n, /** @type {any} */ c) => n + Math.min(c.good, c.wanted), 0);
   const wanted = state.conditions.reduce((/** @type {number} */ n, /** @type {any} */ c) => n + c.wanted, 0);
   const left = state.conditions.reduce((/** @type {number} */ n, /** @type {any} */ c) => n + c.left, 0);
+  const whole = state.conditions.filter((/** @type {any} */ c) => c.left === 0).length;
   bar.setAttribute("value", String(wanted ? good / wanted : 0));
   const elapsed = state.first_time === null ? 0 : state.now - state.first_time;
   const rows = [
     ["here", here ? `${here.good} of ${here.wanted}` : "–"],
     ["hits left", left],
-    ["points done", `${state.done} of ${state.planned}`],
+    ["points done", `${whole} of ${state.planned}`],
     ["elapsed", clock(elapsed)],
     ["time left", state.ended ? "–" : state.seconds_left === null ? "after the first hit" : `about ${clock(state.seconds_left)}`],
     ["rejected", state.struck - (state.verdicts.ok ?? 0) - trials()],

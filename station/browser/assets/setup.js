@@ -13,6 +13,7 @@ import { verdict } from "./task_words.js";
 /** @type {any} */
 let state = null;
 let pictured = -1;
+let known = false;
 
 const facts = el("dl", { class: "counts" });
 const rows = el("tbody");
@@ -30,7 +31,7 @@ fill(
   el("div", { class: "grid wide" },
     el("section", { class: "panel" }, el("h2", {}, "Channels"),
       el("div", { class: "scroll" }, el("table", { class: "lines" },
-        el("thead", {}, el("tr", {}, ...["channel", "level", "", "range", "point", "sensor", "calibrated"]
+        el("thead", {}, el("tr", {}, ...["channel", "level", "", "range", "point", "sensor", "TEDS", "calibrated"]
           .map((name) => el("th", { scope: "col" }, name)))),
         rows))),
     scopeBox),
@@ -60,7 +61,7 @@ function show(fresh) {
     ["conditions", state.planned || state.conditions.length],
   ] : [["instrument", "is being opened"]];
   fill(facts, ...entries.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", { class: "words" }, value))));
-  if (rows.childElementCount !== state.channels.length) channelRows();
+  if (rows.childElementCount !== state.channels.length || Boolean(state.begun) !== known) channelRows();
   pointTable(points, state);
   places.show(state);
   settings.show(state);
@@ -73,6 +74,7 @@ function show(fresh) {
 }
 
 function channelRows() {
+  known = Boolean(state.begun);
   fill(rows, ...state.channels.map((/** @type {any} */ channel) => {
     const sensor = state.sensors[channel.name] ?? {};
     const calibrated = sensor.calibrated ? `${sensor.calibrated}, due ${sensor.due}` : "–";
@@ -83,9 +85,16 @@ function channelRows() {
       el("td", {}, channel.range === null ? "–" : `${shown(channel.range)} ${channel.si}`),
       el("td", { class: "words" }, `${channel.point ?? ""} ${channel.direction ?? ""}`),
       el("td", { class: "words" }, `${channel.quantity}${sensor.serial ? `, no. ${sensor.serial}` : ""}`),
+      tedsCell(channel.name),
       el("td", { class: "words" }, calibrated),
     );
   }));
+}
+
+/** @param {string} name of the channel */
+function tedsCell(name) {
+  const known = state.begun?.channels.find((/** @type {any} */ one) => one.name === name)?.teds ?? "";
+  return el("td", { class: known.includes("another") ? "words alarm" : "words" }, known || "–");
 }
 
 function showLevels() {

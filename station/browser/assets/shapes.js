@@ -15,7 +15,7 @@ deskScreen("Shapes", async (desk, place) => {
   }
   const stage = el("div", { class: "plot" });
   const facts = el("p", { class: "note" });
-  const scatter = /** @type {HTMLCanvasElement} */ (el("canvas", { role: "img" }));
+  const scatter = /** @type {HTMLCanvasElement} */ (el("canvas", { role: "img", "aria-label": "Components of the mode in the complex plane" }));
   const modes = el("ul", { class: "mode-list", role: "list" });
   const mac = el("div", { class: "scroll" });
   const play = el("button", { type: "button", click: () => stop() });

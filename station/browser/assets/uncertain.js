@@ -13,6 +13,7 @@ const SMALL = 1e-3;
  * @returns {{value: string, sd: string, power: string}} `power` is "" or " e+7"
  */
 export function uncertain(value, sd) {
+  if (!Number.isFinite(value)) return { value: "–", sd: "", power: "" };
   const size = Math.abs(value);
   const exponent = size !== 0 && (size >= LARGE || size < SMALL) ? Math.floor(Math.log10(size)) : 0;
   const unit = 10 ** exponent;

@@ -3,12 +3,14 @@
 
 import json
 from collections.abc import Awaitable, Callable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from jointbench.acquisition.basics.errors import FormatError
+from jointbench.acquisition.basics.errors import FormatError, UsageError
 from jointbench.station.browser.app.screen_part import ScreenPage, ScreenPart
 from jointbench.station.browser.bench.live_socket import LiveSocket
 from jointbench.station.browser.bench.session_feed import SessionFeed
+from jointbench.station.browser.guard.open_screens import OpenScreens
+from jointbench.station.browser.guard.request_body import short_body
 from jointbench.station.session_events.command_codec import (
     command_from_json,
     command_to_json,
@@ -20,25 +22,15 @@ if TYPE_CHECKING:
 
 MEASURE = ScreenPage("/measure", "Measure", "measure.js", ("bench.css",))
 SETUP = ScreenPage("/setup", "Setup", "setup.js", ("bench.css",))
-_MOST = 4096
-"""Of a command [bytes]."""
 
 Submit = Callable[[Mapping[str, object]], Awaitable[Mapping[str, Any]]]
 """Submits a command as JSON types; returns its answer."""
 
 
-class Watchers(Protocol):
-    """Takes note of how many screens are open."""
-
-    def __call__(self, count: int, /) -> None:
-        """Take the number of open screens."""
-        ...
-
-
 def bench_part(
     feed: SessionFeed,
     submit: Submit,
-    watchers: Watchers,
+    screens: OpenScreens,
     geometry: Mapping[str, Any] | None,
 ) -> ScreenPart:
     """Return the screens of a session that is measured.
@@ -46,18 +38,17 @@ def bench_part(
     Args:
         feed: of the session.
         submit: of commands to the measuring program.
-        watchers: takes the number of open screens.
+        screens: counts those that are open.
         geometry: ``points`` by name and ``lines`` as JSON types; None without.
     """
     from starlette.responses import JSONResponse, PlainTextResponse
     from starlette.routing import Route, WebSocketRoute
 
     async def command(request: "Request") -> "Response":
-        body = await request.body()
-        if len(body) > _MOST:
-            return PlainTextResponse("the command is too long", 413)
         try:
-            asked = _command(body)
+            asked = _command(await short_body(request))
+        except UsageError as error:
+            return PlainTextResponse(str(error), 413)
         except (ValueError, RecursionError, FormatError) as error:
             return PlainTextResponse(str(error), 400)
         return JSONResponse(await submit(asked))
@@ -81,7 +72,7 @@ def bench_part(
             Route("/bench/state", state),
             Route("/bench/hit/{number:int}", hit),
             Route("/bench/geometry", places),
-            WebSocketRoute("/bench/live", LiveSocket(feed, watchers).serve),
+            WebSocketRoute("/bench/live", LiveSocket(feed, screens).serve),
         ),
         running=feed.running,
     )

@@ -9,19 +9,24 @@ import signal
 import socket
 import threading
 from collections.abc import Mapping
+from contextlib import suppress
 from itertools import count
 from multiprocessing.connection import Connection
 from typing import Any
 
 from jointbench.station.browser.app.serve_screen import screen_server
 from jointbench.station.browser.bench.bench_routes import bench_part
+from jointbench.station.browser.bench.desk_after_session import DeskAfterSession
 from jointbench.station.browser.bench.screen_link import (
+    Relinked,
     Serving,
+    SessionFinished,
     Submitted,
     Taken,
     Watched,
 )
 from jointbench.station.browser.bench.session_feed import SessionFeed
+from jointbench.station.browser.guard.open_screens import OpenScreens
 from jointbench.station.browser.guard.screen_access import ScreenAccess
 
 _LOOK = 0.2  # [s], for the end of the server
@@ -44,15 +49,34 @@ def run_bench_server(
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     desk = _CommandDesk(link, SessionFeed(serving.session))
-    part = bench_part(desk.feed, desk.submit, desk.watched, serving.geometry)
-    access = ScreenAccess(serving.port, serving.token)
-    server = screen_server((part,), access)
+
+    def tell(news: object) -> None:
+        with suppress(OSError):  # the measuring program has ended
+            link.send(news)
+
+    screens = OpenScreens(lambda count: tell(Watched(count)))
+    after = DeskAfterSession(serving.places, screens)
+    if serving.finished:
+        after.finished(serving.session)
+    parts = (
+        bench_part(desk.feed, desk.submit, screens, serving.geometry),
+        after.part(),
+    )
+    access = ScreenAccess(
+        serving.port, token=serving.token, admission=serving.admission
+    )
+    access.relinked = lambda token: tell(Relinked(token))
+    server = screen_server(parts, access)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()
     try:
         while thread.is_alive():
             if link.poll(_LOOK):
-                desk.take(link.recv())
+                news = link.recv()
+                if isinstance(news, SessionFinished):
+                    after.finished(news.session)
+                else:
+                    desk.take(news)
     except (EOFError, OSError):
         server.should_exit = True
     thread.join()
@@ -83,10 +107,6 @@ class _CommandDesk:
         if taken["done"] is not None:
             return taken
         return await self._answered(int(taken["id"]))
-
-    def watched(self, number: int) -> None:
-        """Report how many screens are open."""
-        self._link.send(Watched(number))
 
     def take(self, taken: Taken) -> None:
         """Pass a reply on to the request that waits for it."""

@@ -34,6 +34,7 @@ class EnvelopeRing:
         """
         self.past, self.per_bin = 0, per_bin
         self._kept = kept
+        self._sent: tuple[int, int, bytes] = (-1, -1, b"")
         self._bins: NDArray[np.float32] = np.zeros((channels, 0, 2), np.float32)
         self._rest: FloatArray = np.zeros((channels, 0))
 
@@ -63,6 +64,8 @@ class EnvelopeRing:
     def message(self, first: int) -> bytes:
         """Return the bins from a number on, as far as they are kept.
 
+        Screens that have seen the same bins share one message.
+
         Args:
             first: number of the first bin that is wanted.
 
@@ -71,8 +74,12 @@ class EnvelopeRing:
             channels, samples of a bin; then single precision values, (channels, bins,
             2), SI units.
         """
+        if self._sent[:2] == (first, self.past):
+            return self._sent[2]
         held = self._bins.shape[1]
         start = min(max(first, self.past - held), self.past)
         wanted = self._bins[:, held - (self.past - start) :]
         channels, count = wanted.shape[:2]
-        return _HEAD.pack(start, count, channels, self.per_bin) + wanted.tobytes()
+        head = _HEAD.pack(start, count, channels, self.per_bin)
+        self._sent = first, self.past, head + wanted.tobytes()
+        return self._sent[2]

@@ -6,11 +6,11 @@ browser) waits alone, and continues with the newest bins.
 """
 
 import asyncio
-from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from jointbench.station.browser.bench.session_feed import SessionFeed
+from jointbench.station.browser.guard.open_screens import OpenScreens
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -25,21 +25,21 @@ seen 40 or 60 ms apart by a feed that looks every 20 ms, and none of them may wa
 class LiveSocket:
     """Serves all open screens of a session."""
 
-    def __init__(self, feed: SessionFeed, watchers: Callable[[int], None]) -> None:
+    def __init__(self, feed: SessionFeed, screens: OpenScreens) -> None:
         """Prepare to serve.
 
         Args:
             feed: of the session.
-            watchers: takes the number of open screens.
+            screens: counts those that are open.
         """
-        self._feed, self._watchers, self._open = feed, watchers, 0
+        self._feed, self._screens = feed, screens
 
     async def serve(self, socket: "WebSocket") -> None:
         """Serve one screen until it leaves."""
         from starlette.websockets import WebSocketDisconnect
 
         await socket.accept()
-        self._count(1)
+        self._screens.change(1)
         leaving = asyncio.create_task(_left(socket))
         try:
             await self._send_all(socket, leaving)
@@ -49,11 +49,7 @@ class LiveSocket:
             leaving.cancel()
             with suppress(asyncio.CancelledError):
                 await leaving
-            self._count(-1)
-
-    def _count(self, change: int) -> None:
-        self._open += change
-        self._watchers(self._open)
+            self._screens.change(-1)
 
     async def _send_all(self, socket: "WebSocket", leaving: asyncio.Task[None]) -> None:
         feed, loop = self._feed, asyncio.get_running_loop()
@@ -62,7 +58,7 @@ class LiveSocket:
             now = loop.time()
             if feed.state.last != shown or now - stated > _EVERY:
                 shown, stated = feed.state.last, now
-                await socket.send_json({"state": feed.snapshot()})
+                await socket.send_text(feed.snapshot_text())
             ring = feed.ring
             if ring is not None and ring.past > sent and now - drawn >= _FRAME:
                 drawn = now

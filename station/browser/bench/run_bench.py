@@ -72,6 +72,7 @@ def run_bench(
                     commands,
                     port=screen.port,
                     geometry=None if geometry is None else _places(geometry),
+                    places=screen.geometry,
                     say=lambda line: console.print(line, soft_wrap=True),
                 )
             )
@@ -93,7 +94,7 @@ def run_bench(
             commands=commands,
         )
         for process in served:
-            process.moved(measured.path)
+            process.finished(measured.path)
             process.linger()
     return measured
 

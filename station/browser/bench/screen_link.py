@@ -14,14 +14,31 @@ class Serving:
     Attributes:
         session: file that it follows.
         port: of its listening socket.
-        token: secret of the screen.
+        token: of the next link.
+        admission: of the cookie.
         geometry: points and lines as JSON types; None without.
+        places: file of the geometry; None without.
+        finished: whether the file of the session is whole.
     """
 
     session: Path
     port: int
     token: str
+    admission: str
     geometry: Mapping[str, Any] | None = None
+    places: Path | None = None
+    finished: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SessionFinished:
+    """To the server: the file of the session is whole.
+
+    Attributes:
+        session: its file.
+    """
+
+    session: Path
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +66,17 @@ class Taken:
 
     tag: int
     answer: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Relinked:
+    """From the server: a browser used the link; another one takes its place.
+
+    Attributes:
+        token: of the next link.
+    """
+
+    token: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,9 @@ from jointbench.acquisition.basics.errors import FormatError
 from jointbench.station.browser.app.serve_screen import loopback_socket
 from jointbench.station.browser.bench.bench_server import run_bench_server
 from jointbench.station.browser.bench.screen_link import (
+    Relinked,
     Serving,
+    SessionFinished,
     Submitted,
     Taken,
     Watched,
@@ -52,6 +54,7 @@ class ScreenProcess:
         *,
         port: int = 0,
         geometry: Mapping[str, Any] | None = None,
+        places: Path | None = None,
         say: Callable[[str], None] = lambda line: None,
     ) -> None:
         """Start serving.
@@ -61,7 +64,8 @@ class ScreenProcess:
             commands: takes those of the screens.
             port: TCP port; 0 for any that is free.
             geometry: points and lines as JSON types.
-            say: takes a line where the screen is given up.
+            places: file of the geometry.
+            say: takes a line where the link is another one, or the screen is given up.
 
         Raises:
             UsageError: the port is taken.
@@ -69,10 +73,18 @@ class ScreenProcess:
         self._listening: socket.socket = loopback_socket(port)
         self.access = ScreenAccess(self._listening.getsockname()[1])
         self.process_id = 0
-        self._serving = Serving(session, self.access.port, self.access.token, geometry)
+        self._serving = Serving(
+            session,
+            self.access.port,
+            self.access.token,
+            self.access.admission,
+            geometry,
+            places,
+        )
         self._commands, self._say = commands, say
         self._closing = threading.Event()
         self._watched = 0
+        self._link: Connection | None = None
         self._unwatched_since = time.monotonic()
         self._thread = threading.Thread(target=self._keep, name="screen", daemon=True)
         self._thread.start()
@@ -92,9 +104,12 @@ class ScreenProcess:
         self._thread.join(_LAST_WORD)
         self._listening.close()
 
-    def moved(self, session: Path) -> None:
-        """Take note that the session has another name, for the next server."""
-        self._serving = replace(self._serving, session=session)
+    def finished(self, session: Path) -> None:
+        """Tell the server, and the next one, that the file of the session is whole."""
+        self._serving = replace(self._serving, session=session, finished=True)
+        with suppress(OSError):
+            if self._link is not None:
+                self._link.send(SessionFinished(session))
 
     def linger(self) -> None:
         """Return once no screen has been open for some seconds, or on Ctrl-C."""
@@ -117,6 +132,7 @@ class ScreenProcess:
     def _serve_once(self) -> None:
         context = multiprocessing.get_context("spawn")
         link, far = context.Pipe()
+        self._link = link
         process = context.Process(
             target=run_bench_server,
             args=(far, self._listening, self._serving),
@@ -141,6 +157,10 @@ class ScreenProcess:
     def _take(self, link: Connection, news: object) -> None:
         if isinstance(news, Watched):
             self._watch(news.count)
+        elif isinstance(news, Relinked):
+            self.access.token = news.token
+            self._serving = replace(self._serving, token=news.token)
+            self._say(f"link for another browser: {self.access.link('/measure')}")
         elif isinstance(news, Submitted):
             link.send(Taken(news.tag, self._queued(news.command)))
 

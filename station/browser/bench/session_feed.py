@@ -2,6 +2,7 @@
 """A session as the server of a screen follows it: from its file alone, like `watch`."""
 
 import asyncio
+import json
 import shutil
 import time
 from collections import OrderedDict
@@ -41,6 +42,7 @@ _STORED_UNIT = {
     Quantity.TEMPERATURE.value: "°C",
     Quantity.TACHO.value: "V",
 }
+_SHARED = 0.1  # [s] that a state is shared for
 _DISK_EVERY = 5.0  # [s] between looks at the disk
 
 
@@ -71,6 +73,7 @@ class SessionFeed:
         self._pictures: OrderedDict[int, dict[str, Any]] = OrderedDict()
         self._news = asyncio.Event()
         self._free: tuple[float, int | None] = (float("-inf"), None)
+        self._text = (float("-inf"), -2, "")
         self._shown: tuple[int, dict[str, Any]] = (-2, {})
 
     @asynccontextmanager
@@ -108,6 +111,15 @@ class SessionFeed:
             "notes_of_plan": self.meta.get("notes", ""),
             "sensors": self.sensors,
         }
+
+    def snapshot_text(self) -> str:
+        """Return the message with the state; screens that ask at once share it."""
+        now = time.monotonic()
+        at, number, text = self._text
+        if number != self.state.last or now - at > _SHARED:
+            text = json.dumps({"state": self.snapshot()}, separators=(",", ":"))
+            self._text = now, self.state.last, text
+        return text
 
     def picture(self, number: int) -> dict[str, Any] | None:
         """Return a hit for a screen; None where its samples are not available.

@@ -8,9 +8,12 @@ from threading import Lock
 from typing import Any, TypeVar
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.station.browser.app.serve_screen import open_browser
 from jointbench.station.desk.desk_choice import ChoiceAction
-from jointbench.station.desk.desk_results import opened_desk, save_choices
+from jointbench.station.desk.desk_results import (
+    DeskConflict,
+    opened_desk,
+    save_choices,
+)
 from jointbench.station.desk.desk_state import (
     DeskState,
     decided,
@@ -30,10 +33,21 @@ Shown = TypeVar("Shown")
 
 
 class DeskBoard:
-    """States of the subjects; each is read when it is first asked for."""
+    """States of the subjects; each is read when it is first asked for.
+
+    Attributes:
+        subjects: to choose the modes of.
+        who: makes the choices.
+        waiting: why there is no subject, for people.
+    """
 
     def __init__(
-        self, subjects: Sequence[DeskSubject], who: str, geometry: Path | None = None
+        self,
+        subjects: Sequence[DeskSubject],
+        who: str,
+        geometry: Path | None = None,
+        *,
+        waiting: str = "",
     ) -> None:
         """Lay subjects out.
 
@@ -41,9 +55,10 @@ class DeskBoard:
             subjects: to choose the modes of.
             who: makes the choices.
             geometry: for the report.
+            waiting: why there is no subject, for people.
         """
         self.subjects = tuple(subjects)
-        self.who = who
+        self.who, self.waiting = who, waiting
         self._geometry = geometry
         self._states: dict[int, DeskState] = {}
         self._locks = [Lock() for _ in self.subjects]
@@ -100,10 +115,10 @@ class DeskBoard:
         write_report(page, target)
         return target
 
-    def open_report(self, number: int) -> bool:
-        """Open the report in the browser of this computer."""
+    def report_text(self, number: int) -> bytes | None:
+        """Return the report of a subject as it was written; None without one."""
         target = report_path(self.state(number).subject.files[0])
-        return target.is_file() and open_browser(target.resolve().as_uri())
+        return target.read_bytes() if target.is_file() else None
 
     def _changed(
         self, number: int, change: Callable[[DeskState], DeskState]
@@ -111,7 +126,11 @@ class DeskBoard:
         self._require(number)
         with self._locks[number]:
             state = change(self._opened(number, None))
-            save_choices(state)
+            try:
+                save_choices(state)
+            except DeskConflict:
+                del self._states[number]  # the page shows what is written now
+                raise
             self._states[number] = state
             return state
 

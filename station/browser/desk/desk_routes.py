@@ -5,9 +5,12 @@ import json
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
-from jointbench.acquisition.basics.errors import JointbenchError
-from jointbench.station.browser.app.screen_part import ScreenPage, ScreenPart
+from jointbench.acquisition.basics.errors import JointbenchError, UsageError
+from jointbench.station.browser.app.screen_part import ScreenPart
 from jointbench.station.browser.desk.desk_board import DeskBoard
+from jointbench.station.browser.desk.desk_screens import DESK_PAGES
+from jointbench.station.browser.guard.open_screens import OpenScreens
+from jointbench.station.browser.guard.request_body import short_body
 from jointbench.station.desk.desk_findings import findings_beside
 from jointbench.station.desk.desk_pages import (
     curves_page,
@@ -24,18 +27,11 @@ if TYPE_CHECKING:
     from starlette.responses import Response
     from starlette.routing import BaseRoute
 
-DESK_PAGES = tuple(
-    ScreenPage(f"/{name}", title, f"{script}.js", ("desk.css",))
-    for name, title, script in (
-        ("poles", "Poles", "poles"),
-        ("frfs", "FRFs", "frfs"),
-        ("shapes", "Shapes", "shapes"),
-        ("joint", "Joint and gap", "joint"),
-        ("report", "Report", "report"),
-    )
+_OF_A_REPORT = (
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; "
+    "style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
 )
-_MOST = 4096
-"""Of a choice [bytes]."""
+"""A report is one file with its scripts; the sandbox gives it no cookie, no origin."""
 _PAGES: dict[str, Callable[[DeskState], Any]] = {
     "summary": summary_page,
     "diagram": diagram_page,
@@ -53,14 +49,17 @@ def desk_part(board: DeskBoard) -> ScreenPart:
     Args:
         board: subjects and their states.
     """
-    from starlette.responses import JSONResponse
-    from starlette.routing import Route
+    from starlette.routing import Route, WebSocketRoute
 
-    async def subjects(request: "Request") -> "Response":
+    def subjects(request: "Request") -> Any:
         titles = [one.title for one in board.subjects]
-        return JSONResponse({"titles": titles, "who": board.who})
+        return {"titles": titles, "who": board.who, "waiting": board.waiting}
 
-    routes: list[BaseRoute] = [Route("/desk/subjects", subjects)]
+    routes: list[BaseRoute] = [
+        Route("/desk/subjects", _get(subjects)),
+        WebSocketRoute("/desk/open", OpenScreens().hold),
+        Route("/desk/{number:int}/report.html", _report(board)),
+    ]
     for path, make in _answers(board).items():
         routes.append(Route(path, _get(make)))
     for path, take in _orders(board).items():
@@ -115,15 +114,29 @@ def _orders(board: DeskBoard) -> dict[str, Callable[[int, dict[str, Any]], Any]]
         target = board.report(number)
         return {"name": target.name, "folder": str(target.parent.resolve())}
 
-    def show(number: int, asked: dict[str, Any]) -> Any:
-        return {"opened": board.open_report(number)}
-
     return {
         "/desk/{number:int}/choose": choose,
         "/desk/{number:int}/resolve": resolve,
         "/desk/{number:int}/write-report": report,
-        "/desk/{number:int}/open-report": show,
     }
+
+
+def _report(board: DeskBoard) -> Endpoint:
+    """Return what serves a written report: alone, without rights of the screen."""
+    from starlette.concurrency import run_in_threadpool
+    from starlette.responses import HTMLResponse, PlainTextResponse
+
+    async def answer(request: "Request") -> "Response":
+        number = request.path_params["number"]
+        try:
+            text = await run_in_threadpool(board.report_text, number)
+        except (JointbenchError, OSError) as error:
+            return PlainTextResponse(str(error), 400)
+        if text is None:
+            return PlainTextResponse("the report is not written yet", 404)
+        return HTMLResponse(text, headers={"content-security-policy": _OF_A_REPORT})
+
+    return answer
 
 
 def _state(board: DeskBoard, request: "Request") -> DeskState:
@@ -151,9 +164,10 @@ def _post(take: Callable[[int, dict[str, Any]], Any]) -> Endpoint:
     from starlette.responses import JSONResponse, PlainTextResponse
 
     async def answer(request: "Request") -> "Response":
-        body = await request.body()
-        if len(body) > _MOST:
-            return PlainTextResponse("the choice is too long", 413)
+        try:
+            body = await short_body(request)
+        except UsageError as error:
+            return PlainTextResponse(str(error), 413)
         try:
             asked = json.loads(body or b"{}")
             if not isinstance(asked, dict):

@@ -60,11 +60,13 @@ def refusal(asking: Asking, access: ScreenAccess) -> RequestRefused | None:
         return RequestRefused(421, "this screen has another address")
     if headers.get("sec-fetch-site", "none") not in _OWN_SITES:
         return RequestRefused(403, "a request from another site")
-    by_cookie = access.opens(asking.cookies.get(access.cookie))
+    by_cookie = access.admits(asking.cookies.get(access.cookie))
     reads = asking.method in _READS
-    if not by_cookie and not (reads and access.opens(asking.token)):
+    if not by_cookie and not (asking.method == "GET" and access.opens(asking.token)):
         return RequestRefused(
-            401, "no access: open the link that the command printed, with its token"
+            401,
+            "no access: open the last link that the command printed; each admits one "
+            "browser",
         )
     if not reads and headers.get("origin") not in access.origins:
         return RequestRefused(403, "a request from another origin")

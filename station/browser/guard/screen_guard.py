@@ -53,12 +53,13 @@ class ScreenGuard:
         elif TOKEN in connection.query_params:
             # The secret leaves the address line, and with it the history.
             come = RedirectResponse(_without_token(connection), 303)
-            come.set_cookie(
-                self._access.cookie,
-                self._access.token,
-                httponly=True,
-                samesite="strict",
-            )
+            if self._access.use(connection.query_params.get(TOKEN)):
+                come.set_cookie(
+                    self._access.cookie,
+                    self._access.admission,
+                    httponly=True,
+                    samesite="strict",
+                )
             await come(scope, receive, answering)
         else:
             await self._app(scope, receive, answering)

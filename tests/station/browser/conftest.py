@@ -9,24 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from bench_runs import CHROMIUM_FLAGS
 
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.browser.app.screen_part import ScreenPage, ScreenPart
 from jointbench.station.browser.app.serve_screen import loopback_socket, screen_server
+from jointbench.station.browser.guard.request_body import short_body
 from jointbench.station.browser.guard.screen_access import ScreenAccess
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-# Without a sandbox, as root in a container needs it, and without requests of its own.
-CHROMIUM_FLAGS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
 PAGE = ScreenPage("/measure", "Measure", "measure.js")
 
 
@@ -90,6 +83,14 @@ def screen() -> Iterator[Screen]:
         await socket.send_text("hello")
         await socket.close()
 
-    routes = (Route("/act", act, methods=["POST"]), WebSocketRoute("/talk", talk))
+    async def short(request: Request) -> Response:
+        try:
+            return PlainTextResponse(str(len(await short_body(request))))
+        except UsageError as error:
+            return PlainTextResponse(str(error), 413)
+
+    posts = [Route("/act", act, methods=["POST"])]
+    posts.append(Route("/short", short, methods=["POST"]))
+    routes = (*posts, WebSocketRoute("/talk", talk))
     with served((ScreenPart((PAGE,), routes),)) as one:
         yield one

@@ -2,176 +2,232 @@
 
 import json
 import os
-import re
+import shutil
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from bench_runs import (
+    CHROMIUM_FLAGS,
+    HOSTILE,
+    SOON,
+    Bench,
+    answered,
+    bench,
+    opened,
+    typed,
+)
 
 from jointbench.acquisition.records.recordings import Verdict
 from jointbench.acquisition.session_file.store import read_session
+from jointbench.station.desk.desk_choice import choices_of
+from jointbench.station.results.results_modes import read_run
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "plates.toml"
-FATES = "good*3,overload,good*3,double,good*99"
-HOSTILE = "<img src=x onerror=alert(1)>"
-SOON = 60_000  # [ms] on a machine with other work
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+
+# A model of two rigid bodies cannot bend; `gap` is to say so, with one effect tried.
+MODEL = f"""
+[bodies.lower]
+mass = "9.75 kg"
+mass_sd = "0.05 kg"
+channel = "{HOSTILE}"
+points = ["6"]
+[bodies.upper]
+mass = "9.75 kg"
+mass_sd = "0.05 kg"
+channel = "a1"
+points = ["1", "2", "3"]
+[links.ground]
+between = ["ground", "lower"]
+stiffness = "2e8 N/m"
+stiffness_sd = "1e8 N/m"
+damping = "200 N s/m"
+damping_sd = "100 N s/m"
+[links.joint]
+between = ["lower", "upper"]
+stiffness = "1e9 N/m"
+stiffness_sd = "5e8 N/m"
+damping = "500 N s/m"
+damping_sd = "300 N s/m"
+joint = true
+[gap]
+preload_reference = "25 kN"
+"""
+LEFT_OUT = (
+    "cubic_stiffness,quadratic_stiffness,gap,jenkins,iwan,bouc_wen,coulomb,"
+    "quadratic_damping,saturation,hum,maxwell,extra_damping,added_mass,hidden_mode,"
+    "preload_damping,loosening,delay,sensor_lowpass,polarity,cross_talk"
+)
+UNNAMED = """() => [...document.querySelectorAll(
+    'button, a, select, input, canvas, meter, progress, [role=slider], [role=img]')]
+  .filter(e => e.checkVisibility() && e.getAttribute('aria-hidden') !== 'true')
+  .filter(e => !e.parentElement.closest('[role=img]'))
+  .filter(e => !e.textContent.trim() && !e.ariaLabel && !e.labels?.length)
+  .map(e => e.outerHTML)"""
 
 
-def plan_file(folder: Path) -> Path:
-    """Return a plan of 3 points x 2 torques, with markup for a channel's name."""
-    text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
-    text = text.replace('["1", "2", "3", "4", "5"]', '["1", "2", "3"]')
-    text = text.replace('["20 N m", "50 N m", "80 N m"]', '["20 N m", "50 N m"]')
-    text = text.replace("repeats = 3", 'repeats = 2\ntrial_hits = 1\nlength = "0.4 s"')
-    text = text.replace('name = "a6"', f'name = "{HOSTILE}"')
-    path = folder / "plan.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+def hit_counts(running: Bench) -> dict[str, int]:
+    """Return how many hits of each verdict the finished session holds."""
+    session = read_session(running.file)
+    verdicts = [h.verdict for r in session.recordings for h in r.hits]
+    return {one.value: verdicts.count(one) for one in Verdict}
 
 
-@dataclass
-class Bench:
-    """A session that runs.
-
-    Attributes:
-        link: of its screen.
-        process: that measures.
-        file: of the session.
-    """
-
-    link: str
-    process: "subprocess.Popen[str]"
-    file: Path
-    lines: list[str] = field(default_factory=list)
-
-    def server(self) -> int:
-        """Return the process that serves the screen."""
-        tasks = Path(f"/proc/{self.process.pid}/task").glob("*/children")
-        for child in " ".join(task.read_text() for task in tasks).split():
-            line = Path(f"/proc/{child}/cmdline").read_bytes()
-            # The screen's process is spawned, the recorder's is forked from a server.
-            if b"spawn_main" in line:
-                return int(child)
-        raise AssertionError("no screen is served")
-
-
-@contextmanager
-def bench(folder: Path, *options: str) -> Iterator[Bench]:
-    """Run a session with its screen."""
-    command = [sys.executable, "-m", "jointbench", "bench", str(plan_file(folder))]
-    source = f"sim:plates?seed=1&speed=2&fates={FATES}"
-    command += ["--out", str(folder / "s.h5"), "--source", source, "--no-browser"]
-    log = folder / "log.txt"
-    with log.open("w") as out:
-        process = subprocess.Popen(
-            [*command, *options], stdout=out, stderr=subprocess.STDOUT, text=True
-        )
-    try:
-        yield Bench(first_link(log, process), process, folder / "s.h5")
-    finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-            try:
-                process.wait(30)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-
-
-def first_link(log: Path, process: "subprocess.Popen[str]") -> str:
-    """Return the link that the command prints."""
-    while process.poll() is None:
-        found = re.search(r"http://\S+", log.read_text())
-        if found:
-            return found[0]
-        time.sleep(0.1)
-    raise AssertionError(log.read_text())
-
-
-@contextmanager
-def opened(chromium: "Browser", link: str) -> Iterator["Page"]:
-    """Open a link; no request may leave this computer, and no script may fail."""
-    with chromium.new_context() as context:
-        page = context.new_page()
-        foreign: list[str] = []
-        page.on(
-            "request",
-            lambda r: foreign.append(r.url) if "//127.0.0.1:" not in r.url else None,
-        )
-        page.on("pageerror", lambda error: foreign.append(str(error)))
-        page.on("dialog", lambda dialog: foreign.append(dialog.message))
-        page.goto(link)
-        yield page
-        assert not foreign
-
-
-def typed(page: "Page", key: str, text: str) -> None:
-    """Press a key that asks for a line, type it, and send it."""
-    page.keyboard.press(key)
-    page.locator("dialog input").wait_for()
-    page.keyboard.type(text)
-    page.keyboard.press("Enter")
-
-
-def answered(page: "Page", words: str) -> None:
-    """Wait for the answer to a command."""
-    page.locator("#answer", has_text=words).wait_for(timeout=SOON)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
-def test_a_session_by_keys_alone_survives_reload_and_loss_of_its_server(
+def test_from_the_first_hit_to_the_report_by_keys(
     chromium: "Browser", tmp_path: Path
 ) -> None:
-    """Three points, two torques, one overload, one double hit, one hit rejected.
+    """Three points, two torques, an overload, a double hit; then poles to report.
 
-    Neither bad hit is averaged; after a reload, and after the server was killed, the
-    screen shows the same session, which continued meanwhile.
+    All on one server. Neither bad hit is averaged; after a reload, and after the server
+    was killed, the screen shows the same session, which continued meanwhile.
     """
     with bench(tmp_path, "--json", str(tmp_path / "s.json")) as running:
-        with opened(chromium, running.link) as page:
-            page.locator("#verdict", has_text="HIT 2").wait_for(timeout=SOON)
-            assert "token" not in page.url
-            page.keyboard.press("Space")
-            page.locator("#task", has_text="PAUSE").wait_for(timeout=SOON)
-            page.keyboard.press("a")
-            answered(page, "not done: the session pauses")
-            typed(page, "t", "bolt 2 rubs <b>a lot</b>")
-            answered(page, "noted: bolt 2 rubs <b>a lot</b>")
-            before = page.locator("#verdict").inner_text()
-            page.reload()
-            page.locator("#verdict", has_text=before.split("  ")[0]).wait_for()
-            page.keyboard.press("Space")
-            answered(page, "the session continues")
-            typed(page, "h", "2")
-            answered(page, "hit 2 is rejected")
-            os.kill(running.server(), signal.SIGKILL)
-            page.locator(".trouble:not([hidden])").wait_for(timeout=SOON)
-            page.locator(".trouble[hidden]").wait_for(timeout=SOON, state="attached")
-            page.keyboard.press("w")
-            answered(page, "seen")
-            page.locator("button", has_text=HOSTILE).wait_for()
-            page.locator("#task", has_text="END").wait_for(timeout=SOON)
-            assert page.locator("canvas").count() >= 6
-            assert page.locator(".badge").inner_text() == "SIMULATED"
-        assert running.process.wait(60) == 0
+        with opened(chromium, running.link()) as page:
+            measured_by_keys(page, running)
+            page.keyboard.press("Tab")  # from the note's field to the page
+            page.locator("#to-poles").focus()
+            page.keyboard.press("Enter")
+            poles_by_keys(page)
+            shapes_and_gap(page, tmp_path, running)
+            reported(page, tmp_path)
+        assert running.process.wait(120) == 0
     content = json.loads((tmp_path / "s.json").read_text())
     counts = content["verdicts"]
     assert counts["overload"] == counts["double"] == 1
     assert counts["ok"] == 12
     assert content["hits"][1]["verdict"] == "operator"
     assert content["lost_samples"] == 0
-    session = read_session(running.file)
-    averaged = [
-        h for r in session.recordings for h in r.hits if h.verdict is Verdict.OK
-    ]
-    assert len(averaged) == 12
+    assert hit_counts(running)["ok"] == 12
+
+
+def measured_by_keys(page: "Page", running: Bench) -> None:
+    """Pause, note, reject, reload; the server dies; the session ends."""
+    page.locator("#verdict", has_text="HIT 2").wait_for()
+    assert "token" not in page.url
+    page.keyboard.press("Space")
+    page.locator("#task", has_text="PAUSE").wait_for()
+    page.keyboard.press("a")
+    answered(page, "not done: the session pauses")
+    typed(page, "t", "bolt 2 rubs <b>a lot</b>")
+    answered(page, "noted: bolt 2 rubs <b>a lot</b>")
+    before = page.locator("#verdict").inner_text()
+    looked_at_setup(page)
+    page.reload()
+    page.locator("#verdict", has_text=before.split("  ")[0]).wait_for()
+    assert page.evaluate(UNNAMED) == []
+    page.keyboard.press("Space")
+    answered(page, "the session continues")
+    typed(page, "h", "2")
+    answered(page, "hit 2 is rejected")
+    os.kill(running.server(), signal.SIGKILL)
+    page.locator(".trouble:not([hidden])").wait_for()
+    page.locator(".trouble[hidden]").wait_for(state="attached")
+    page.keyboard.press("w")
+    answered(page, "seen")
+    page.locator("button", has_text=HOSTILE).wait_for()
+    page.locator("#task", has_text="END").wait_for()
+    assert page.locator("canvas").count() >= 6
+    assert page.locator(".badge").inner_text() == "SIMULATED"
+
+
+def looked_at_setup(page: "Page") -> None:
+    """See channels, their sensors and the proposals; the desk waits for the end."""
+    page.get_by_role("link", name="Setup").press("Enter")
+    page.locator("td", has_text="TEDS").first.wait_for()
+    page.get_by_role("slider", name="trigger level").wait_for()
+    page.locator("meter").nth(3).wait_for()
+    assert page.evaluate(UNNAMED) == []
+    page.get_by_role("link", name="Poles").press("Enter")
+    page.locator(".waiting", has_text="is being measured").wait_for()
+    page.get_by_role("link", name="Measure").press("Enter")
+    page.locator("#task", has_text="PAUSE").wait_for()
+
+
+def poles_by_keys(page: "Page") -> None:
+    """Pin the pole under the cursor, and see it in the table."""
+    page.locator("canvas.pole-chart").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("p")
+    page.locator(".desk-grid tbody tr", has_text="pinned").first.wait_for()
+    page.locator(".desk-message", has_text="written").wait_for()
+    assert page.evaluate(UNNAMED) == []
+
+
+def shapes_and_gap(page: "Page", folder: Path, running: Bench) -> None:
+    """Look at the shapes; have `gap` judge the session, and read its verdict."""
+    page.get_by_role("link", name="Shapes").press("Enter")
+    page.locator("canvas.shape-view").wait_for()
+    assert page.evaluate(UNNAMED) == []
+    page.get_by_role("link", name="Joint and gap").press("Enter")
+    page.locator("pre", has_text="jointbench gap").wait_for()
+    (folder / "bench.toml").write_text(MODEL, encoding="utf-8")
+    found = folder / "s.gap.json"
+    command = [sys.executable, "-m", "jointbench", "gap", str(running.file)]
+    command += ["--model", str(folder / "bench.toml"), "--without", LEFT_OUT]
+    subprocess.run(
+        [*command, "--json", str(found)], check=True, capture_output=True, timeout=300
+    )
+    page.reload()
+    page.locator(".verdict-line", has_text="no known effect explains").wait_for()
+    reason = str(json.loads(found.read_text())["reason"])
+    assert reason in page.locator("section[aria-label=Gap]").inner_text()
+
+
+def reported(page: "Page", folder: Path) -> None:
+    """Write the report, open its file, and find the choice in it."""
+    page.get_by_role("link", name="Report").press("Enter")
+    page.get_by_role("button", name="Write the report").press("Enter")
+    page.locator("code", has_text="s.html").first.wait_for()
+    with page.context.expect_page() as other:
+        page.get_by_role("link", name="Open it").press("Enter")
+    other.value.locator("h1").first.wait_for()
+    results = next(folder.glob("s.*N.results.h5"))
+    assert results.name in other.value.locator("body").inner_text()
+    choices = choices_of(read_run(results).modes[0].steps)
+    assert [one.action for one in choices] == ["pin"]
+
+
+def test_a_browser_that_is_killed_loses_no_hit(
+    chromium: "Browser", tmp_path: Path
+) -> None:
+    """The whole process dies; `measure` goes on, and a new browser sees the same."""
+    from playwright.sync_api import Error
+
+    mark = f"--killed-by-a-test={tmp_path.name}"
+    found = shutil.which("chromium") or shutil.which("chromium-browser")
+    with bench(tmp_path, "--json", str(tmp_path / "s.json")) as running:
+        first = chromium.browser_type.launch(
+            executable_path=found, args=[*CHROMIUM_FLAGS, mark]
+        )
+        page = first.new_page()
+        page.goto(running.link())
+        page.locator("#verdict", has_text="HIT 3").wait_for(timeout=SOON)
+        os.kill(process_with(mark), signal.SIGKILL)
+        with pytest.raises(Error):
+            page.reload()
+        with opened(chromium, running.link()) as again:
+            again.locator("#task", has_text="END").wait_for()
+            shown = again.locator(".counts").inner_text()
+        assert running.process.wait(120) == 0
+    content = json.loads((tmp_path / "s.json").read_text())
+    assert content["verdicts"]["ok"] == 12
+    assert content["lost_samples"] == 0
+    assert hit_counts(running)["ok"] == 12
+    assert "6 of 6" in shown
+
+
+def process_with(mark: str) -> int:
+    """Return the process of a browser that was started with a mark."""
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            line = (folder / "cmdline").read_bytes().split(b"\0")
+            if mark.encode() in line and not any(a.startswith(b"--type") for a in line):
+                return int(folder.name)
+    raise AssertionError("the browser does not run")

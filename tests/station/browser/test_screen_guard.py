@@ -40,7 +40,7 @@ def ask(
 
 def cookie(screen: Served) -> dict[str, str]:
     """Return the header of a browser that has opened the link."""
-    return {"Cookie": f"{screen.access.cookie}={screen.access.token}"}
+    return {"Cookie": f"{screen.access.cookie}={screen.access.admission}"}
 
 
 def own(screen: Served) -> dict[str, str]:
@@ -68,6 +68,36 @@ def test_the_link_turns_its_token_into_a_cookie_of_this_port(screen: Served) -> 
     assert given.startswith(f"jointbench-{screen.access.port}=")
     assert "HttpOnly" in given
     assert "samesite=strict" in given.lower()
+
+
+def test_a_token_admits_one_browser(screen: Served) -> None:
+    """What is left of it in a list of processes or a history opens nothing."""
+    used = f"/measure?token={screen.access.token}"
+    assert ask(screen, "GET", used).status == 303
+    assert ask(screen, "GET", used).status == 401
+    assert ask(screen, "GET", used, cookie(screen)).status == 303
+    assert screen.access.token not in used
+    assert ask(screen, "GET", f"/measure?token={screen.access.token}").status == 303
+
+
+def test_the_cookie_is_another_secret_than_the_token(screen: Served) -> None:
+    """A link that was seen is no cookie."""
+    given = {"Cookie": f"{screen.access.cookie}={screen.access.token}"}
+    assert ask(screen, "GET", "/measure", given).status == 401
+
+
+def test_a_body_without_end_is_not_read(screen: Served) -> None:
+    """More than any page sends is refused before the rest has come."""
+    link = http.client.HTTPConnection("127.0.0.1", screen.access.port, timeout=60)
+    link.putrequest("POST", "/short")
+    for name, value in {**own(screen), "Content-Length": "1000000000"}.items():
+        link.putheader(name, value)
+    link.endheaders()
+    link.send(b"x" * 10_000)
+    answer = link.getresponse()
+    assert answer.status == 413
+    assert b"longer than 4096 bytes" in answer.read()
+    link.close()
 
 
 def test_a_link_leads_to_no_other_host(screen: Served) -> None:

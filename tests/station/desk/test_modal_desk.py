@@ -9,6 +9,7 @@ from desk_files import COLUMNS, DAMPING, FREQUENCY, write_frfs
 
 import jointbench as jb
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.station.desk.desk_choice import (
     ChoiceAction,
     choice_steps,
@@ -16,13 +17,15 @@ from jointbench.station.desk.desk_choice import (
     effective,
     plain_who,
 )
+from jointbench.station.desk.desk_findings import findings_beside
 from jointbench.station.desk.desk_pages import (
     diagram_page,
     evidence_page,
     summary_page,
 )
-from jointbench.station.desk.desk_results import set_aside
+from jointbench.station.desk.desk_results import DeskConflict, set_aside
 from jointbench.station.desk.desk_state import made_choice
+from jointbench.station.desk.desk_subject import DeskRequest, desk_subjects
 from jointbench.station.desk.frf_pages import frf_page, matrix_page
 from jointbench.station.desk.shape_page import shapes_page
 from jointbench.station.library.desks import ModalDesk
@@ -144,6 +147,40 @@ def test_choices_are_in_the_results_and_come_back(
     assert kept is not None and kept.name == "p1-txt.desk-1.results.h5"
     assert not written.exists()
     kept.unlink()
+
+
+def test_two_desks_do_not_overwrite_each_other(
+    opened: ModalDesk, files: list[Path]
+) -> None:
+    """The later one is refused with who chose what; what was written stays."""
+    written = opened.clear(250.0, 350.0).save()
+    with pytest.raises(DeskConflict, match=r"A\. Person cleared 250.*choose again"):
+        opened.pin(90.0, 20).save()
+    log = choices_of(read_run(written).modes[0].steps)
+    assert [one.action for one in log] == ["clear"]
+    again = jb.desk(files, columns=COLUMNS, who="B").pin(90.0, 20)
+    again.save()
+    log = choices_of(read_run(written).modes[0].steps)
+    assert [(one.action, one.who) for one in log] == [
+        ("clear", "A. Person"),
+        ("pin", "B"),
+    ]
+    written.unlink()
+
+
+def test_numbers_that_json_cannot_carry_are_left_out(files: list[Path]) -> None:
+    """NaN and 1e999 in a file of another program; a table that is a text."""
+    beside = files[0].parent
+    text = '{"effects": [], "gap_before": NaN, "gap_after": 1e999, "verdict": "none"}'
+    (beside / "p1.gap.json").write_text(text, encoding="utf-8")
+    text = '{"parameters": "none", "verdict": "accepted"}'
+    (beside / "p1.identify.json").write_text(text, encoding="utf-8")
+    subject = desk_subjects(files, DeskRequest(frfs=FrfOptions(COLUMNS)))[0]
+    found = findings_beside(subject)
+    assert [one.kind for one in found] == ["gap"]
+    assert found[0].content["gap_before"] is found[0].content["gap_after"] is None
+    for name in ("gap", "identify"):
+        (beside / f"p1.{name}.json").unlink()
 
 
 def test_nothing_is_written_before_the_first_choice(opened: ModalDesk) -> None:

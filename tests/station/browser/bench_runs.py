@@ -1,0 +1,131 @@
+"""A session that `bench` measures on the simulated chassis, and pages on it."""
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+# Without a sandbox, as root in a container needs it, and without requests of its own.
+CHROMIUM_FLAGS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+EXAMPLE = Path(__file__).parents[3] / "examples" / "plates.toml"
+FATES = "good*3,overload,good*3,double,good*99"
+HOSTILE = "<img src=x onerror=alert(1)>"
+SOON = 90_000  # [ms] on a machine with other work
+
+
+def plan_file(folder: Path) -> Path:
+    """Return a plan of 3 points x 2 torques, with markup for a channel's name."""
+    text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
+    text = text.replace('["1", "2", "3", "4", "5"]', '["1", "2", "3"]')
+    text = text.replace('["20 N m", "50 N m", "80 N m"]', '["20 N m", "50 N m"]')
+    text = text.replace("repeats = 3", 'repeats = 2\ntrial_hits = 1\nlength = "0.4 s"')
+    text = text.replace('name = "a6"', f'name = "{HOSTILE}"')
+    path = folder / "plan.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@dataclass
+class Bench:
+    """A session that runs.
+
+    Attributes:
+        log: what the command printed.
+        process: that measures.
+        file: of the session.
+    """
+
+    log: Path
+    process: "subprocess.Popen[str]"
+    file: Path
+
+    def link(self) -> str:
+        """Return the link for the next browser, printed last; each admits one."""
+        until = time.monotonic() + SOON / 1000
+        while self.process.poll() is None and time.monotonic() < until:
+            found = re.findall(r"http://\S+", self.log.read_text())
+            if found:
+                return str(found[-1])
+            time.sleep(0.2)
+        raise AssertionError(self.log.read_text())
+
+    def server(self) -> int:
+        """Return the process that serves the screen."""
+        tasks = Path(f"/proc/{self.process.pid}/task").glob("*/children")
+        for child in " ".join(task.read_text() for task in tasks).split():
+            line = Path(f"/proc/{child}/cmdline").read_bytes()
+            # The screen's process is spawned, the recorder's is forked from a server.
+            if b"spawn_main" in line:
+                return int(child)
+        raise AssertionError("no screen is served")
+
+
+@contextmanager
+def bench(folder: Path, *options: str) -> Iterator[Bench]:
+    """Run a session with its screen."""
+    command = [sys.executable, "-m", "jointbench", "bench", str(plan_file(folder))]
+    source = f"sim:plates?seed=1&speed=2&fates={FATES}"
+    command += ["--out", str(folder / "s.h5"), "--source", source, "--no-browser"]
+    log = folder / "log.txt"
+    with log.open("w") as out:
+        process = subprocess.Popen(
+            [*command, *options], stdout=out, stderr=subprocess.STDOUT, text=True
+        )
+    try:
+        yield Bench(log, process, folder / "s.h5")
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.wait(60)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+@contextmanager
+def opened(chromium: "Browser", link: str) -> Iterator["Page"]:
+    """Open a link; no request may leave this computer, and no script may fail."""
+    with chromium.new_context() as context:
+        context.set_default_timeout(SOON)
+        page = context.new_page()
+        foreign: list[str] = []
+        page.on(
+            "request",
+            lambda r: foreign.append(r.url) if "//127.0.0.1:" not in r.url else None,
+        )
+        page.on("pageerror", lambda error: foreign.append(str(error)))
+        page.on("dialog", lambda dialog: foreign.append(dialog.message))
+        page.goto(link)
+        yield page
+        assert not foreign
+
+
+def typed(page: "Page", key: str, text: str) -> None:
+    """Press a key that asks for a line, type it, and send it."""
+    page.keyboard.press(key)
+    page.locator("dialog input").wait_for()
+    page.keyboard.type(text)
+    page.keyboard.press("Enter")
+
+
+def answered(page: "Page", words: str) -> None:
+    """Wait for the answer to a command."""
+    page.locator("#answer", has_text=words).wait_for()
