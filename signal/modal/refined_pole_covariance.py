@@ -352,8 +352,9 @@ def _joint_covariance(here: _Point, prior: PolePrior) -> FloatArray:
     inverse = inverses(gram)
     variance = np.diag(inverse)
     if np.any(variance <= 0.0):
-        positive = np.diag(_bounded_inverse(gram))
-        np.fill_diagonal(inverse, np.where(variance > 0.0, variance, positive))
+        bounded = _bounded_inverse(gram)
+        more = np.maximum(variance - np.diag(bounded), 0.0)
+        inverse = bounded + np.diag(more)
     return np.where(held, inverse, 0.0)
 
 
