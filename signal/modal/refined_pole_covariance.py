@@ -348,10 +348,26 @@ def _joint_covariance(here: _Point, prior: PolePrior) -> FloatArray:
     free = np.repeat(~prior.pinned, 2)
     gram = here.gram + np.diag(np.repeat(prior.weight, 2))
     held = np.outer(free, free)
-    inverse = np.where(held, inverses(np.where(held, gram, np.diag(~free))), 0.0)
-    # Rounding can leave a variance of exact data below zero.
-    np.fill_diagonal(inverse, np.maximum(np.diag(inverse), 0.0))
-    return inverse
+    gram = np.where(held, gram, np.diag(~free))
+    inverse = inverses(gram)
+    variance = np.diag(inverse)
+    if np.any(variance <= 0.0):
+        bounded = _bounded_inverse(gram)
+        more = np.maximum(variance - np.diag(bounded), 0.0)
+        inverse = bounded + np.diag(more)
+    return np.where(held, inverse, 0.0)
+
+
+def _bounded_inverse(gram: FloatArray) -> FloatArray:
+    """Invert a matrix of which rounding has left an eigenvalue below zero.
+
+    That direction of poles nearly at one place is known no better than rounding: the
+    size of the eigenvalue stands for it, so that no variance is zero.
+    """
+    scale = np.sqrt(np.maximum(np.abs(np.diag(gram)), np.finfo(float).tiny))
+    value, turn = np.linalg.eigh(gram / np.outer(scale, scale))
+    size = np.maximum(np.abs(value), np.finfo(float).eps * np.abs(value).max())
+    return np.asarray((turn / size) @ turn.T / np.outer(scale, scale))
 
 
 def _own_blocks(joint: FloatArray) -> FloatArray:

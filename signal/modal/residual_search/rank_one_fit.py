@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 from scipy.optimize import least_squares
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.signal.modal.normal_equations import inverses
 from jointbench.signal.modal.residual_search.peak_sums import PeakLines, sums_of_slopes
 
@@ -56,8 +56,7 @@ def fit_rank_one(
         pole: where the search begins [rad/s], shape (n_modes,).
         reference: likewise, shape (n_modes, n_references).
     """
-    pivot = np.argmax(np.abs(reference), axis=1)
-    turned = reference / np.take_along_axis(reference, pivot[:, None], axis=1)
+    pivot, turned = _turned(reference)
     start = _packed(pole / peak.width, turned, pivot)
 
     def left(values: FloatArray) -> FloatArray:
@@ -72,8 +71,17 @@ def fit_rank_one(
         found = least_squares(left, start, slopes, method="lm", max_nfev=_EVALUATIONS)
         values, cost = found.x, 2.0 * float(found.cost)
     poles, references = _unpacked(peak, values, pivot)
+    # The search may have made another component the largest one.
+    pivot, references = _turned(references)
     shape = _projected(peak, poles, references)[0]
+    values = _packed(poles / peak.width, references, pivot)
     return RankOneModes(poles, shape, references, cost, values)
+
+
+def _turned(reference: ComplexArray) -> tuple[IntArray, ComplexArray]:
+    """Return which component of each reference is largest, and it scaled to 1 there."""
+    pivot = np.argmax(np.abs(reference), axis=1)
+    return pivot, reference / np.take_along_axis(reference, pivot[:, None], axis=1)
 
 
 def _by_sums(

@@ -9,7 +9,10 @@ import pytest
 from jointbench.acquisition.basics.arrays import ComplexArray
 from jointbench.signal.modal.residual_search import rank_one_fit
 from jointbench.signal.modal.residual_search.peak_sums import PeakLines, sums_of_slopes
-from jointbench.signal.modal.residual_search.rank_one_fit import fit_rank_one
+from jointbench.signal.modal.residual_search.rank_one_fit import (
+    covariance,
+    fit_rank_one,
+)
 
 POLES: ComplexArray = np.array([-3.0 + 625.0j, -4.0 + 630.0j])
 REFERENCES = np.array([[1.0, 0.4 - 0.2j, 0.3], [-0.5, 1.0, 0.2 + 0.1j]], np.complex128)
@@ -77,3 +80,14 @@ def test_the_gradient_is_that_of_the_sum_of_squares(peak: PeakLines) -> None:
         ]
         slope = (ends[1] - ends[0]) / 2e-4
         assert 2.0 * gradient[number] == pytest.approx(slope, rel=1e-4)
+
+
+def test_covariances_do_not_depend_on_where_the_search_begins(peak: PeakLines) -> None:
+    """A reference whose other component comes out largest is scaled by that one."""
+    best = fit_rank_one(peak, POLES, REFERENCES)
+    turned = REFERENCES.copy()
+    turned[:, [0, 1]] = turned[:, [1, 0]]
+    found = fit_rank_one(peak, POLES, turned)
+    assert np.abs(found.reference).max(axis=1) == pytest.approx([1.0, 1.0])
+    for own, other in zip(covariance(peak, found), covariance(peak, best), strict=True):
+        assert own == pytest.approx(other, rel=0.01, abs=1e-6 * np.abs(other).max())
