@@ -69,7 +69,11 @@ def _rounds(rows: SurfaceRows) -> Act:
 
 def instrument_effects(rows: SurfaceRows) -> list[SurfaceEffect]:
     """Return the effects of the instrument that the rows can show."""
-    pairs = [(_tip(), _traces), (_blur(), _blurs), (_noise(), _adds_noise)]
+    pairs: list[tuple[Effect, Act]] = [
+        (_tip(), _traces),
+        (_blur(), _blurs),
+        (_noise(), _adds_noise),
+    ]
     if rows.used[ShapeRow.GRID]:
         pairs.append((_steps(), _rounds(rows)))
     return [SurfaceEffect(effect, act, INSTRUMENT_SITE) for effect, act in pairs]
