@@ -20,7 +20,8 @@ from jointbench.simulators.plates.plates_bench import PlatesBench
 
 _KEYS = (
     "seed, speed, level, interval, fates, faults, module, modules, name, top_rate, "
-    "trigger, port, host; sim:mass also has mass, hammer, response; sim:spindle has "
+    "trigger, port, host; sim:plates has washers, thermometer; sim:mass also has "
+    "mass, hammer, response; sim:spindle has "
     "rpm, sim:shaker has signal"
 )
 _SIGNALS = ("random", "sweep")
@@ -74,7 +75,12 @@ def chassis_from_url(url: str) -> ChassisSetup:
         fates=_fates(values.pop("fates", "good")),
     )
     speed = values.pop("speed", "max")
-    bench = PlatesBench(operator=operator, seed=seed)
+    bench = PlatesBench(
+        operator=operator,
+        seed=seed,
+        washers=int(take("washers", "0", int)),
+        thermometer=bool(take("thermometer", "0", int)),
+    )
     if urlsplit(url).path == "mass":
         bench = _mass_bench(bench, take)
     source = None
