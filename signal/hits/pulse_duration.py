@@ -13,9 +13,11 @@ SHORTEST_PULSE, LONGEST_PULSE = 10e-6, 50e-3
 a sledge with the softest tip. Real tips on a 0.1 to 1 kg hammer give 0.1 to 5 ms."""
 _QUIET = 0.02
 """Median force over its peak below which a record is made of pulses [-]."""
-_BLOCK = 2**19
-"""Samples that are looked at together; a record of twice as many is read whole."""
-_STRETCHES, _STRETCH = 256, 4096
+_BLOCK = 2**17
+"""Samples that are looked at together."""
+_WHOLE = 2**20
+"""Samples of a record up to which it is read whole."""
+_STRETCHES, _STRETCH = 64, 4096
 """Stretches of a longer record that state its force at rest, and their samples."""
 
 
@@ -65,7 +67,7 @@ def pulse_duration(recording: Recording) -> float | None:
     rows = recording.rows(Quantity.FORCE)
     if len(rows) != 1:
         return None
-    if recording.samples.shape[1] > 2 * _BLOCK:
+    if recording.samples.shape[1] > _WHOLE:
         width = _long_pulse_width(recording.samples, rows[0])
     else:
         width = _pulse_width(recording.samples[rows[0]])
@@ -86,7 +88,7 @@ def _long_pulse_width(samples: Samples, row: int) -> float | None:
     """Return `_pulse_width` of a record that is read block by block.
 
     The force at rest is that of stretches spread over all of it, which gives the median
-    of noise to 0.1 % of its standard deviation.
+    of noise to 0.3 % of its standard deviation.
     """
     count = samples.shape[1]
     starts = np.linspace(0, count - _STRETCH, _STRETCHES).astype(int).tolist()
@@ -101,8 +103,9 @@ def _long_pulse_width(samples: Samples, row: int) -> float | None:
     peak = top - rest
     if peak <= 0.0 or float(np.median(np.abs(some - rest))) > _QUIET * peak:
         return None
-    begin = max(0, at - _BLOCK)
-    return _width_around(samples[row, begin : at + _BLOCK] - rest, at - begin)
+    begin = max(0, at - _BLOCK // 2)
+    around = samples[row, begin : at + _BLOCK // 2]
+    return _width_around(around - rest, at - begin)
 
 
 def _width_around(force: FloatArray, at: int) -> float | None:

@@ -20,7 +20,7 @@ _LEAST_STILL, _MANY_STILL = 3, 8
 _BY_CHANCE = 1e-6
 # Pieces of a record; the one with most repeats is the reference.
 _SHARES = 16
-_BLOCK = 2**19  # samples read together
+_BLOCK = 2**17  # samples read together
 
 
 def stands_still(samples: Samples, row: int) -> bool:

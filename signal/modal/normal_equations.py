@@ -11,8 +11,8 @@ _RIDGE = 1e-13
 _FEW_FRFS = 8
 # Products of columns are formed for this many lines at a time, to stay in the cache.
 _LINES_AT_ONCE = 512
-# Values of these products at the most, 16 MB, and lines that are always worth it.
-_PRODUCTS_AT_ONCE, _LEAST_LINES = 2**21, 32
+# Values of these products at the most, 8 MB, and lines that are always worth it.
+_PRODUCTS_AT_ONCE, _LEAST_LINES = 2**20, 32
 
 
 def stacked(values: ComplexArray) -> FloatArray:

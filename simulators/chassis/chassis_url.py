@@ -65,6 +65,8 @@ def chassis_from_url(url: str) -> ChassisSetup:
             return read(text)
         except ValueError:
             raise UsageError(f"{key} is {text!r} in {url!r}; give a number") from None
+        except UsageError as error:
+            raise UsageError(f"{key} in {url!r}: {error}") from None
 
     seed = int(take("seed", "1", int))
     interval = values.pop("interval", "")
@@ -74,7 +76,7 @@ def chassis_from_url(url: str) -> ChassisSetup:
         interval=_positive(interval) if interval else None,
         fates=_fates(values.pop("fates", "good")),
     )
-    speed = values.pop("speed", "max")
+    speed = take("speed", "max", lambda t: math.inf if t == "max" else _positive(t))
     bench = PlatesBench(
         operator=operator,
         seed=seed,
@@ -93,7 +95,7 @@ def chassis_from_url(url: str) -> ChassisSetup:
     module_list(module, modules)
     setup = ChassisSetup(
         bench=source or (None if path == "sine" else bench),
-        speed=math.inf if speed == "max" else _positive(speed),
+        speed=speed,
         module=module,
         modules=modules,
         name=values.pop("name", "cDAQSim1"),
