@@ -23,8 +23,8 @@ MOST_KEPT = 2**25
 """Size of the spectra that are kept [bytes]: 50 hits of four channels and half a second
 at 51.2 kS/s. Transforming a further one again takes some milliseconds."""
 _LINES = 256
-"""Lines by which the hits that may spoil an average are told from the others: 2 kB a
-channel and hit. The median of coherence over them is that over all lines to some
+"""Lines by which the hits that may spoil an average are separated from the others: 2 kB
+a channel and hit. The median of coherence over them is that over all lines to some
 percent of its spread."""
 _WORTH_IT = 5
 """Hits of which the coherence without them is computed over all lines."""
@@ -114,8 +114,8 @@ class FewLines:
     """A few lines of every hit in the sums: which one, left out, helps the others most.
 
     The coherence of the others over all lines costs milliseconds a hit; over some
-    hundred lines of the band it costs microseconds, and is as good for telling which
-    hits are worth the whole.
+    hundred lines of the band it costs microseconds, and shows as well which hits
+    are worth the whole.
     """
 
     def __init__(self, sums: RunningSums) -> None:
