@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Load washers under the bolts of the plates, and a thermometer at the joint.
 
-What the bolts really have is drawn, and stated to no reader: each bolt has a friction of
-its own, drawn again every time it is tightened, and relaxes from then on; each washer
-deviates from its data sheet; the joint warms up slowly.
+What the bolts really have is drawn, and stated to no reader: each bolt has a friction
+of its own, drawn again every time it is tightened, and relaxes from then on; each
+washer deviates from its data sheet; the joint warms up slowly.
 """
 
 from dataclasses import dataclass, field
