@@ -102,6 +102,8 @@ class Hit:
         measure: number on which the verdict is based (see `reason` for its meaning).
         reason: one line with the meaning of `measure` and the rule that it met or
             broke.
+        temperature: mean over the hit of the first channel of a temperature [degC];
+            None without one.
     """
 
     start: int
@@ -112,6 +114,7 @@ class Hit:
     verdict: Verdict
     measure: float
     reason: str
+    temperature: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,6 +132,7 @@ class Recording:
         provenance: origin and processing steps.
         preload: on the joint during this recording [N]; None for that of the session,
             or not given.
+        preload_sd: its standard uncertainty where it was measured [N], else None.
     """
 
     name: str
@@ -139,6 +143,7 @@ class Recording:
     hits: tuple[Hit, ...] = ()
     provenance: Provenance = field(default=())
     preload: float | None = None
+    preload_sd: float | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once and make the samples read-only."""
@@ -149,6 +154,8 @@ class Recording:
         require_positive("sample_rate", self.sample_rate)
         if self.preload is not None:
             require_positive("preload", self.preload)
+        if self.preload_sd is not None:
+            require_positive("preload_sd", self.preload_sd)
         names = [channel.name for channel in self.channels]
         if len(set(names)) != len(names):
             raise ShapeError(f"channel names must be unique, got {names}")

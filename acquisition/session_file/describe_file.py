@@ -106,6 +106,7 @@ def _recording(file: h5py.File, group: h5py.Group) -> Description:
         "duration_s": samples / rate,
         "start_time_s": start,
         "preload_n": read_preload(group),
+        "preload_sd_n": read_preload(group, "preload_sd"),
         "channels": [
             {
                 "name": channel.name,
@@ -154,6 +155,7 @@ def _hit(hit: Hit, rate: float, start: float) -> Description:
         "verdict": hit.verdict.value,
         "measure": hit.measure,
         "reason": hit.reason,
+        "temperature_degc": hit.temperature,
     }
 
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.array_checks import require_finite
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.steady_memory import keep_memory_steady
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.netcdf_write import CHUNK_VALUES
@@ -39,9 +40,9 @@ from jointbench.acquisition.session_file.store import (
 MOST_WHOLE = 2**26
 """Size of the samples up to which a session is read at once [bytes]: it is faster, and
 a few times as much fits into any memory."""
-_MOST_KEPT = 2**26
+_MOST_KEPT = 2**25
 """Size of the unpacked samples that are kept [bytes]: one hit of 64 channels and 2 s at
-51.2 kS/s takes half of it in single precision."""
+51.2 kS/s in single precision."""
 _DOUBLE = 8
 
 
@@ -157,6 +158,8 @@ def open_session(path: Path | str, *, most_whole: int = MOST_WHOLE) -> Session:
         file = stack.enter_context(open_guarded(path, limits=SESSION_LIMITS))
         if not _is_large(file, path, most_whole):
             return read_session(path)
+        # Blocks of many sizes are read in turn, over hours of samples.
+        keep_memory_steady()
         opened = _OpenFile(Path(path), file)
         with damage_named(path):
             if read_attribute(file, "schema") == LIVE_SCHEMA:

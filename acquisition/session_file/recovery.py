@@ -92,6 +92,7 @@ def outline_live(content: LiveContent) -> tuple[Session, tuple[LiveSpan, ...]]:
     except (KeyError, TypeError, ValueError) as error:
         raise FormatError(f"the head of the recording is damaged ({error})") from error
     hits = _hits(content.log)
+    measured = _measured_preloads(content.log)
     recordings, spans = [], []
     names: dict[str, int] = {}
     for stretch in _stretches(content):
@@ -99,7 +100,12 @@ def outline_live(content: LiveContent) -> tuple[Session, tuple[LiveSpan, ...]]:
         names[name] = names.get(name, 0) + 1
         if names[name] > 1:
             name = f"{name} ({names[name]})"
-        recordings.append(_recording(name, stretch, channels, rate, hits))
+        own = _recording(name, stretch, channels, rate, hits)
+        begun = int(stretch.run.get("stored", 0))
+        if begun in measured:
+            preload, deviation = measured[begun]
+            own = replace(own, preload=preload, preload_sd=deviation)
+        recordings.append(own)
         spans.append(stretch.span)
     session = Session(
         **texts,
@@ -218,20 +224,47 @@ def _hits(log: Sequence[dict[str, Any]]) -> list[tuple[int, Hit]]:
             verdict=Verdict(entry["verdict"]),
             measure=float(entry["measure"]),
             reason=str(entry["reason"]),
+            temperature=entry.get("temperature"),
         )
     return sorted(found.items())
 
 
+def _measured_preloads(
+    log: Sequence[dict[str, Any]],
+) -> dict[int, tuple[float, float]]:
+    """Return preload and its sd [N] of the runs at which the bolts were measured.
+
+    From one tightening to the next the joint has one preload: the mean of what was
+    measured, whose uncertainty includes how much it changed meanwhile.
+
+    Returns:
+        By the index of the first sample of a run.
+    """
+    found: dict[int, tuple[float, float]] = {}
+    runs: list[int] = []
+    readings: list[tuple[float, float]] = []
+    torque: object = None
+    for entry in (*log, {"kind": "run"}):
+        if entry.get("kind") == "preload":
+            readings.append((float(entry["preload"]), float(entry["preload_sd"])))
+        if entry.get("kind") != "run" or entry.get("purpose") == "pause":
+            continue
+        if entry.get("torque") != torque or "stored" not in entry:
+            if readings:
+                values, deviations = np.array(readings).T
+                sd = np.sqrt(np.mean(deviations**2) + np.var(values))
+                found |= dict.fromkeys(runs, (float(np.mean(values)), float(sd)))
+            runs, readings, torque = [], [], entry.get("torque")
+        runs.append(int(entry.get("stored", 0)))
+    return found
+
+
 def _moved(hit: Hit, first: int) -> Hit:
-    return Hit(
-        hit.start - first,
-        hit.trigger - first,
-        hit.stop - first,
-        hit.point,
-        hit.peak_force,
-        hit.verdict,
-        hit.measure,
-        hit.reason,
+    return replace(
+        hit,
+        start=hit.start - first,
+        trigger=hit.trigger - first,
+        stop=hit.stop - first,
     )
 
 

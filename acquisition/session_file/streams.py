@@ -6,8 +6,9 @@ Each recording is one group that xarray can open::
     /stream/<recording>   samples (channel, time), its coordinates time and channel
                           (names), and one row a channel of channel_name, quantity,
                           point, direction, unit, ...; attribute preload [N] where it
-                          is this recording's own
-    /hits/<recording>     start, trigger, stop, peak_force, verdict, reason (hit)
+                          is this recording's own, preload_sd [N] where measured
+    /hits/<recording>     start, trigger, stop, peak_force, verdict, reason (hit), and
+                          temperature [degC] where one was measured
 
 The time axis is a plain coordinate for readers, but stored as integers with
 `scale_factor` and `add_offset`: a ramp of small integers compresses to almost nothing,
@@ -124,6 +125,9 @@ def _begin_recording(
             "sample_rate": float(recording.sample_rate),
             "start_time": float(recording.start_time),
             "preload": None if recording.preload is None else float(recording.preload),
+            "preload_sd": (
+                None if recording.preload_sd is None else float(recording.preload_sd)
+            ),
         },
     )
     write_axis(
@@ -179,12 +183,13 @@ def recording_from_group(
         hits=read_hits(file, group),
         provenance=provenance,
         preload=read_preload(group),
+        preload_sd=read_preload(group, "preload_sd"),
     )
 
 
-def read_preload(group: h5py.Group) -> float | None:
-    """Return the preload of a recording [N], None if it has no separate one."""
-    return float(number(group, "preload")) if "preload" in group.attrs else None
+def read_preload(group: h5py.Group, name: str = "preload") -> float | None:
+    """Return the preload of a recording [N], or its sd; None if it has no own one."""
+    return float(number(group, name)) if name in group.attrs else None
 
 
 def read_channels(group: h5py.Group) -> tuple[Channel, ...]:
@@ -232,9 +237,17 @@ def read_hits(file: h5py.File, group: h5py.Group) -> tuple[Hit, ...]:
         [Verdict(word) for word in read_flags(stored["verdict"])],
         read_array(stored["measure"]).tolist(),
         read_texts(stored["reason"]),
+        _temperatures(stored),
         strict=True,
     )
     return tuple(Hit(*row) for row in rows)
+
+
+def _temperatures(stored: h5py.Group) -> list[float | None]:
+    """Return the temperature of each hit; files without one have none."""
+    if "temperature" not in stored:
+        return [None] * int(stored["start"].shape[0])
+    return _known(stored["temperature"])
 
 
 def _write_channels(group: h5py.Group, channels: Sequence[Channel]) -> None:
@@ -326,6 +339,12 @@ def _write_hits(file: h5py.File, stream: h5py.Group, recording: Recording) -> No
     measures = [float(hit.measure) for hit in hits]
     words = "number of the verdict, see reason"
     write_variable(group, "measure", measures, ("hit",), units="1", long_name=words)
+    if any(hit.temperature is not None for hit in hits):
+        found = [np.nan if h.temperature is None else h.temperature for h in hits]
+        words = "mean temperature over the hit, NaN if unknown"
+        write_variable(
+            group, "temperature", found, ("hit",), units="degC", long_name=words
+        )
     for key, long_name, texts in (
         ("point", "where the hammer struck", [hit.point for hit in hits]),
         ("reason", "rule met or broken", [hit.reason for hit in hits]),

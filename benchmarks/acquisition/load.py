@@ -25,6 +25,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 RUNS = Path(__file__).with_name("load.json")
 PAGE = Path(__file__).parents[2] / "docs" / "bench-load.md"
@@ -72,6 +73,9 @@ class Run:
         program: CPU of the measuring program [% of a core].
         recorder_mb: its memory in the second minute (or first look) and at the end.
         program_mb: the same of the measuring program.
+        recorder_growth: of its memory from the second minute on, a straight line
+            [MB a minute]; None where it was not fitted.
+        program_growth: the same of the measuring program.
         in_file: samples per channel in the finished file, None where not counted.
         load: of the computer over one minute at the end [processes].
     """
@@ -93,6 +97,21 @@ class Run:
     program_mb: tuple[float, float]
     in_file: int | None
     load: str
+    recorder_growth: float | None = None
+    program_growth: float | None = None
+
+
+def growth(seen: list[tuple[float, float]]) -> float | None:
+    """Return the growth of memory after the first minute [MB a minute].
+
+    Args:
+        seen: time [s] and memory [MB].
+    """
+    later = [one for one in seen if one[0] - seen[0][0] > 60.0]
+    if len(later) < 10:
+        return None
+    x, y = np.array(later).T
+    return float(60.0 * np.polyfit(x, y, 1)[0])
 
 
 def serve(parent: Connection, modules: int, rate: float) -> None:
@@ -213,6 +232,8 @@ def run(minutes: float, channels: int, rate: float, busy: int) -> Run:
         program_mb=(second[2][1], p_mb),
         in_file=in_file,
         load=load,
+        recorder_growth=growth([(at, mb) for at, (_, mb), _ in seen]),
+        program_growth=growth([(at, mb) for at, _, (_, mb) in seen]),
     )
 
 
@@ -241,6 +262,12 @@ def watch(
     return [*seen, (time.monotonic(), look(recorder), look(measuring.pid))]
 
 
+def span(megabytes: tuple[float, float], growth: float | None) -> str:
+    """Return memory after a minute and at the end, and its growth a minute."""
+    words = f"{megabytes[0]:.0f} to {megabytes[1]:.0f}"
+    return words if growth is None else f"{words} ({growth:+.2f})"
+
+
 def row(run: Run) -> str:
     """Return a run as a line of the table."""
     return (
@@ -267,7 +294,8 @@ def page(runs: list[Run]) -> str:
             "stated compute without a pause. Lost samples are those that the device "
             "counted minus those in its buffer minus those in the file. In brackets "
             "are the missing samples of the gaps that the program states. Memory is "
-            "that after a minute and that at the end.",
+            "that after a minute and that at the end; in brackets its growth from then "
+            "on in MB a minute, by a straight line.",
             "",
             "| channels x rate | signal [s] | other processes | load (1 min) | hits "
             "judged | device counter | in its buffer | stored | lost | gaps (stated) | "

@@ -201,11 +201,17 @@ def run_step(name: str, hours: float, arguments: list[str]) -> Step:
     )
 
 
+def of_signal(step: Step) -> float:
+    """Return the growth of a step per minute of signal [MB a minute]."""
+    return step.growth * step.seconds / 3600.0 / step.hours
+
+
 def row(step: Step) -> str:
     """Return a step as a line of the table."""
     return (
         f"| {step.name} | {step.hours:g} | {step.seconds:.0f} | {step.cpu:.0f} | "
-        f"{step.peak:.0f} | {step.growth:+.1f} | {step.code} |"
+        f"{step.peak:.0f} | {step.growth:+.1f} | {of_signal(step):+.2f} | "
+        f"{step.code} |"
     )
 
 
@@ -220,11 +226,12 @@ def page(steps: list[Step]) -> str:
             "The file of a killed recording of 4 channels at 51.2 kS/s is written at "
             "the speed of the disk; it holds a hit every two seconds. Each command "
             "runs in a process of its own, whose memory is read twice a second. The "
-            "growth is that of a straight line over the second half of its time.",
+            "growth is that of a straight line over the second half of its time, a "
+            "minute of that time and a minute of the signal that was read in it.",
             "",
             "| step | signal [h] | time [s] | CPU [s] | largest memory [MB] | growth "
-            "[MB/min] | exit code |",
-            "|---|---|---|---|---|---|---|",
+            "[MB/min] | growth [MB/min of signal] | exit code |",
+            "|---|---|---|---|---|---|---|---|",
             *(row(step) for step in steps),
             "",
         ]

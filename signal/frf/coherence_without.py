@@ -13,7 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    squared_size,
+)
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.hits.hit_spectra import HitSpectra
 
@@ -99,3 +104,30 @@ def coherence_of_others(
     coherence = np.minimum(np.abs(cross) ** 2 / safe, 1.0)
     band = excited_band_of(others, frequency)
     return typical_coherence(coherence, frequency, band) or 0.0
+
+
+def coherence_of_each(
+    sums: HitSums, force: ComplexArray, response: ComplexArray, inside: BoolArray
+) -> FloatArray:
+    """Return the coherence without each hit, on some lines only: where to look.
+
+    Args:
+        sums: over all hits, on these lines.
+        force: of each hit, shape (n_hits, n_lines).
+        response: shape (n_hits, n_responses, n_lines).
+        inside: lines that count, shape (n_lines,).
+
+    Returns:
+        Shape (n_hits,) [-]; 0 where no line counts.
+    """
+    if not inside.any():
+        return np.zeros(len(force))
+    force = force[:, inside].astype(complex)
+    response = response[:, :, inside].astype(complex)
+    others = np.maximum(sums.force[inside] - squared_size(force), 0.0)
+    answers = np.maximum(sums.response[:, inside] - squared_size(response), 0.0)
+    cross = sums.cross[:, inside] - response * force[:, None].conj()
+    product = answers * others[:, None]
+    coherence = squared_size(cross) / np.where(product > 0.0, product, 1.0)
+    typical = np.median(np.minimum(coherence, 1.0), axis=2)
+    return np.asarray(typical.mean(axis=1))

@@ -6,13 +6,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.records.recordings import Quantity, Recording
+from jointbench.acquisition.records.recordings import Quantity, Recording, Samples
 
 SHORTEST_PULSE, LONGEST_PULSE = 10e-6, 50e-3
 """Half-height duration of a hammer's force pulse [s]: a steel tip on a needle hammer to
 a sledge with the softest tip. Real tips on a 0.1 to 1 kg hammer give 0.1 to 5 ms."""
 _QUIET = 0.02
 """Median force over its peak below which a record is made of pulses [-]."""
+_BLOCK = 2**17
+"""Samples that are looked at together."""
+_WHOLE = 2**20
+"""Samples of a record up to which it is read whole."""
+_STRETCHES, _STRETCH = 64, 4096
+"""Stretches of a longer record that state its force at rest, and their samples."""
 
 
 def time_scale_words(recordings: Sequence[Recording]) -> tuple[str, ...]:
@@ -59,7 +65,12 @@ def pulse_duration(recording: Recording) -> float | None:
     None without one force channel, or where the force is no pulse.
     """
     rows = recording.rows(Quantity.FORCE)
-    width = _pulse_width(recording.samples[rows[0]]) if len(rows) == 1 else None
+    if len(rows) != 1:
+        return None
+    if recording.samples.shape[1] > _WHOLE:
+        width = _long_pulse_width(recording.samples, rows[0])
+    else:
+        width = _pulse_width(recording.samples[rows[0]])
     return None if width is None else width / recording.sample_rate
 
 
@@ -70,6 +81,36 @@ def _pulse_width(samples: FloatArray) -> float | None:
     peak = float(force[at])
     if peak <= 0.0 or float(np.median(np.abs(force))) > _QUIET * peak:
         return None
+    return _width_around(force, at)
+
+
+def _long_pulse_width(samples: Samples, row: int) -> float | None:
+    """Return `_pulse_width` of a record that is read block by block.
+
+    The force at rest is that of stretches spread over all of it, which gives the median
+    of noise to 0.3 % of its standard deviation.
+    """
+    count = samples.shape[1]
+    starts = np.linspace(0, count - _STRETCH, _STRETCHES).astype(int).tolist()
+    some = np.concatenate([samples[row, s : s + _STRETCH] for s in starts])
+    rest = float(np.median(some))
+    at, top = 0, -np.inf
+    for first in range(0, count, _BLOCK):
+        block = samples[row, first : first + _BLOCK]
+        here = int(np.argmax(block))
+        if block[here] > top:
+            at, top = first + here, float(block[here])
+    peak = top - rest
+    if peak <= 0.0 or float(np.median(np.abs(some - rest))) > _QUIET * peak:
+        return None
+    begin = max(0, at - _BLOCK // 2)
+    around = samples[row, begin : at + _BLOCK // 2]
+    return _width_around(around - rest, at - begin)
+
+
+def _width_around(force: FloatArray, at: int) -> float | None:
+    """Return the samples for which the force exceeds half its peak at index `at`."""
+    peak = float(force[at])
     low = np.flatnonzero(force < 0.5 * peak)
     before, after = low[low < at], low[low > at]
     if before.size == 0 or after.size == 0:

@@ -16,22 +16,19 @@ from dataclasses import replace
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import Recording, response_rows
 from jointbench.acquisition.records.stored_samples import remembered
 from jointbench.signal.kalman.process_models import StateModel
+from jointbench.signal.kalman.still_samples import (
+    MOVING,
+    StillSamples,
+    runs_of,
+    stands_still,
+)
 
-# Constant samples in a row: the least number of a drop-out, and the number used before
-# it is estimated how often quantisation repeats samples of a quiet channel.
-_LEAST_STILL, _MANY_STILL = 3, 8
-# Probability of so long a run anywhere in a record of a working channel.
-_BY_CHANCE = 1e-6
-# Pieces of a record; the one with most repeats is the reference.
-_SHARES = 16
-# A channel moves where at least this share of its samples differ from the one before.
-_MOVING = 0.5
 # Largest share of lost samples that can be filled in.
 _MOST_LOST = 0.3
 _LEAST_NOISE = 1e-9
@@ -97,45 +94,25 @@ def find_dropouts(recording: Recording) -> BoolArray:
 
 @remembered
 def has_dropouts(recording: Recording) -> bool:
-    """Return whether `find_dropouts` finds a lost sample."""
-    return any(_lost_spans(recording.samples[r]) for r in response_rows(recording))
+    """Return whether `find_dropouts` finds a lost sample, read block by block."""
+    return any(stands_still(recording.samples, r) for r in response_rows(recording))
 
 
 def _lost_spans(samples: FloatArray) -> list[tuple[int, int]]:
     """Return first and one past the last of each run of lost samples of a channel."""
     still = samples[1:] == samples[:-1]
-    if not still.any() or np.mean(~still) < _MOVING:
+    if not still.any() or np.mean(~still) < MOVING:
         return []
-    runs, least = _runs(still), _least_still(still)
+    runs = runs_of(still)
+    counted = StillSamples(still.size)
+    counted.feed(still)
+    least = counted.least()
     # The first of equal samples may be the last good one; zero is not.
     return [
         (int(first) + int(samples[first] != 0.0), int(last) + 1)
         for first, last in runs
         if last - first >= least
     ]
-
-
-def _runs(still: BoolArray) -> IntArray:
-    """Return first and one past the last of each run of True, shape (n, 2)."""
-    edges = np.flatnonzero(np.diff(np.r_[0, still.view(np.int8), 0]))
-    return np.asarray(edges.reshape(-1, 2), np.int64)
-
-
-def _least_still(still: BoolArray) -> int:
-    """Return the number of repeats in a row that quantisation does not explain.
-
-    A quiet channel that varies by a few steps repeats a share p of its samples by
-    chance; n samples then hold a run of m with a probability of at most n p^m.
-    """
-    single = still.copy()
-    for first, last in _runs(still):
-        if last - first >= _MANY_STILL:
-            single[first:last] = False
-    share = max(float(piece.mean()) for piece in np.array_split(single, _SHARES))
-    if share == 0.0:
-        return _LEAST_STILL
-    needed = np.log(_BY_CHANCE / still.size) / np.log(share)
-    return max(_LEAST_STILL, int(np.ceil(needed)))
 
 
 def repair_dropouts(

@@ -11,6 +11,8 @@ _RIDGE = 1e-13
 _FEW_FRFS = 8
 # Products of columns are formed for this many lines at a time, to stay in the cache.
 _LINES_AT_ONCE = 512
+# Values of these products at the most, 8 MB, and lines that are always worth it.
+_PRODUCTS_AT_ONCE, _LEAST_LINES = 2**20, 32
 
 
 def stacked(values: ComplexArray) -> FloatArray:
@@ -37,12 +39,14 @@ def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
     size = columns.shape[1]
     upper = np.triu_indices(size)
     packed = np.zeros((weight.shape[0], upper[0].size))
-    real, imag = (np.ascontiguousarray(p.T) for p in (columns.real, columns.imag))
-    pairs = np.empty((upper[0].size, _LINES_AT_ONCE))
-    for first in range(0, columns.shape[0], _LINES_AT_ONCE):
-        here = slice(first, first + _LINES_AT_ONCE)
-        count = real[0, here].size
-        _products(real, imag, first, count, pairs)
+    step = min(_LINES_AT_ONCE, max(_LEAST_LINES, _PRODUCTS_AT_ONCE // upper[0].size))
+    pairs = np.empty((upper[0].size, step))
+    for first in range(0, columns.shape[0], step):
+        here = slice(first, first + step)
+        real = np.ascontiguousarray(columns[here].real.T)
+        imag = np.ascontiguousarray(columns[here].imag.T)
+        count = real.shape[1]
+        _products(real, imag, count, pairs)
         packed += weight[:, here] @ pairs[:, :count].T
     place = np.empty((size, size), int)
     place[upper] = place.T[upper] = np.arange(upper[0].size)
@@ -51,22 +55,21 @@ def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
 
 @compiled()
 def _products(
-    real: FloatArray, imag: FloatArray, first: int, count: int, pairs: FloatArray
+    real: FloatArray, imag: FloatArray, count: int, pairs: FloatArray
 ) -> None:
     """Form the products of each column with itself and those after it, in place.
 
     Args:
         real: parts of the columns, shape (n, n_lines).
         imag: same shape.
-        first: line.
         count: of lines.
         pairs: receives the products, shape (n (n + 1) / 2, at least count).
     """
     row = 0
     for i in range(real.shape[0]):
-        a, b = real[i, first : first + count], imag[i, first : first + count]
+        a, b = real[i], imag[i]
         for j in range(i, real.shape[0]):
-            c, d = real[j, first : first + count], imag[j, first : first + count]
+            c, d = real[j], imag[j]
             into = pairs[row]
             for k in range(count):
                 into[k] = a[k] * c[k] + b[k] * d[k]

@@ -20,7 +20,8 @@ from jointbench.simulators.plates.plates_bench import PlatesBench
 
 _KEYS = (
     "seed, speed, level, interval, fates, faults, module, modules, name, top_rate, "
-    "trigger, port, host; sim:mass also has mass, hammer, response; sim:spindle has "
+    "trigger, port, host; sim:plates has washers, thermometer; sim:mass also has "
+    "mass, hammer, response; sim:spindle has "
     "rpm, sim:shaker has signal"
 )
 _SIGNALS = ("random", "sweep")
@@ -64,6 +65,8 @@ def chassis_from_url(url: str) -> ChassisSetup:
             return read(text)
         except ValueError:
             raise UsageError(f"{key} is {text!r} in {url!r}; give a number") from None
+        except UsageError as error:
+            raise UsageError(f"{key} in {url!r}: {error}") from None
 
     seed = int(take("seed", "1", int))
     interval = values.pop("interval", "")
@@ -73,8 +76,13 @@ def chassis_from_url(url: str) -> ChassisSetup:
         interval=_positive(interval) if interval else None,
         fates=_fates(values.pop("fates", "good")),
     )
-    speed = values.pop("speed", "max")
-    bench = PlatesBench(operator=operator, seed=seed)
+    speed = take("speed", "max", lambda t: math.inf if t == "max" else _positive(t))
+    bench = PlatesBench(
+        operator=operator,
+        seed=seed,
+        washers=int(take("washers", "0", int)),
+        thermometer=bool(take("thermometer", "0", int)),
+    )
     if urlsplit(url).path == "mass":
         bench = _mass_bench(bench, take)
     source = None
@@ -87,7 +95,7 @@ def chassis_from_url(url: str) -> ChassisSetup:
     module_list(module, modules)
     setup = ChassisSetup(
         bench=source or (None if path == "sine" else bench),
-        speed=math.inf if speed == "max" else _positive(speed),
+        speed=speed,
         module=module,
         modules=modules,
         name=values.pop("name", "cDAQSim1"),

@@ -18,6 +18,7 @@ from jointbench.simulators.mechanics.modal_response import Poles
 from jointbench.simulators.plates.calibration_mass import CalibrationMass, mass_poles
 from jointbench.simulators.plates.plates import POINTS, PlatesDesign, plates_poles
 from jointbench.simulators.plates.plates_strike import Stroke, signal_piece, stroke
+from jointbench.simulators.plates.slow_sensors import SlowSensors
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 # Samples generated together, so that sample k does not depend on the reads. A piece is
@@ -64,12 +65,16 @@ class PlatesBench:
         operator: its parameters.
         sensors: by input; further inputs are open and contain noise.
         seed: of the noise.
+        washers: bolts with a load washer, at the inputs after the sensors.
+        thermometer: whether one is at the input after those.
     """
 
     design: PlatesDesign | CalibrationMass = field(default_factory=PlatesDesign)
     operator: SimulatedOperator = field(default_factory=SimulatedOperator)
     sensors: tuple[PluggedSensor, ...] = SENSORS
     seed: int = 1
+    washers: int = 0
+    thermometer: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +116,7 @@ class LivePlates:
         self._free_at = self._free_before = 0.0
         self._strokes: list[Stroke] = []
         self._made: dict[int, FloatArray] = {}
+        self._slow = SlowSensors(bench.washers, bench.thermometer, bench.seed)
         self.history: list[PlannedStroke] = []
 
     @property
@@ -240,9 +246,12 @@ class LivePlates:
             seed = [self._bench.seed, 13, self._stream, number]
             shape = (len(sensors) + 1, _PIECE)
             noise = np.random.default_rng(seed).standard_normal(shape)
+            own_piece = (self._stream, number)
+            self._slow.tighten(self._torque, first / self._rate)
+            slow = self._slow.volts(first / self._rate, _PIECE, own_piece)
             for row, sensor, own in zip(noise, sensors, physical, strict=False):
                 row *= sensor.noise
                 row += sensor.sensitivity * own
-            self._made[number] = noise
+            self._made[number] = np.vstack((noise[:-1], slow, noise[-1:]))
             self._made.pop(number - _KEPT, None)
         return self._made[number]

@@ -69,7 +69,9 @@ def _session_problems(session: Session) -> list[str]:
 def _step_problems(step: Step, stored: int, missing: int) -> list[str]:
     detail = dict(step.detail)
     if step.name == "recovered":
-        return [f"recovered after a crash, {detail['damaged_blocks']} damaged blocks"]
+        damaged = int(detail.get("damaged_blocks", 0))
+        words = f"recovered after a crash, {damaged} damaged blocks left out"
+        return [words] if damaged else []
     if step.name != "continuity":
         return []
     found = []

@@ -34,6 +34,8 @@ from jointbench.station.pipeline.recordings_by_preload import (
     by_preload,
     join_pages,
     of_preload,
+    preload_sd,
+    preload_words,
 )
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.report.modal_table import show_modal
@@ -125,10 +127,13 @@ def run_modal(
             chain = judged_modes(group, settings, own_run, preload)
         own, shared = target, universal
         if len(groups) > 1:
-            console(json_target).print(f"\nPreload {preload} N")
+            console(json_target).print(f"\n{preload_words(preload, group)}")
             own = None if target is None else of_preload(target, preload)
             shared = None if universal is None else of_preload(universal, preload)
-        contents.append(_give_out(chain, files, (own, shared, json_target)))
+        content = _give_out(chain, files, (own, shared, json_target))
+        deviation = preload_sd(group)
+        known = {} if deviation is None else {"preload_sd_n": deviation}
+        contents.append(content | known)
         chains.append(chain)
     content = join_pages([preload for preload, _ in groups], contents)
     content |= {"results": str(target or ""), "import_warnings": list(doubts)}

@@ -17,6 +17,7 @@ from jointbench.acquisition.ni.sensors import Sensor, table_channels
 from jointbench.acquisition.ni.stream import Block, NiStream, StreamSettings
 from jointbench.station.continuous.record_plan import read_record_plan
 from jointbench.station.doctor.bench_finding import BenchFinding, Health, bad, good
+from jointbench.station.doctor.bolt_checks import bolt_findings
 from jointbench.station.doctor.device_checks import (
     OPEN_RATE,
     device_findings,
@@ -175,6 +176,9 @@ def _streamed(
     for name in stream.open_loops():
         yield bad("noise", name, "its loop is open", "check cable, plug and sensor")
     yield from noise_findings(samples, stream.sensors, sample_rate=rate)
+    if case.plan is not None:
+        tables = case.plan.table.preload
+        yield from bolt_findings(tables, table_channels(stream.sensors), samples)
     if case.plan is not None and case.hit_time > 0:
         yield from _one_hit(opened, stream, case)
 

@@ -48,7 +48,10 @@ class JudgedHits(Shown):
         return tuple(hit for hit in self.hits if hit.verdict is Verdict.OK)
 
     def to_xarray(self) -> "Dataset":
-        """Return time, point, peak force and verdict of each hit."""
+        """Return time, point, peak force and verdict of each hit.
+
+        Where they were measured, preload with its sd and temperature too.
+        """
         pairs = [(one, hit) for one in self.recordings for hit in one.hits]
         time = [r.start_time + h.trigger / r.sample_rate for r, h in pairs]
         words: dict[str, Variable] = {
@@ -63,6 +66,7 @@ class JudgedHits(Shown):
             "verdict": (("hit",), [h.verdict.value for _, h in pairs], "", "verdict"),
             "recording": (("hit",), [r.name for r, _ in pairs], "", "recording"),
         }
+        words |= _measured_beside(pairs)
         number = np.arange(1, len(pairs) + 1)
         return dataset(words, {"hit": (("hit",), number, "1", "number")}, {})
 
@@ -103,6 +107,21 @@ def hits(source: Source, *, columns: str | None = None, point: str = "1") -> Jud
     """
     measured = _opened(source, columns, point)
     return JudgedHits(judge_hits(measured.recordings, ChainSettings()))
+
+
+def _measured_beside(pairs: Sequence[tuple[Recording, Hit]]) -> dict[str, Variable]:
+    """Return preload, its sd and temperature of each hit, those that are known."""
+    columns = (
+        ("preload", [r.preload for r, _ in pairs], "N", "preload of the joint"),
+        ("preload_sd", [r.preload_sd for r, _ in pairs], "N", "sd of the preload"),
+        ("temperature", [h.temperature for _, h in pairs], "degC", "mean over the hit"),
+    )
+    measured = any(r.preload_sd is not None for r, _ in pairs)
+    return {
+        name: (("hit",), [np.nan if v is None else v for v in values], unit, words)
+        for name, values, unit, words in columns
+        if any(v is not None for v in values) and (name != "preload" or measured)
+    }
 
 
 def require_one_preload(recordings: Sequence[Recording]) -> None:

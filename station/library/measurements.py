@@ -103,6 +103,8 @@ class Measurement(Shown):
         }
         facts = {"recording": one.name, "sample_rate_hz": one.sample_rate}
         facts |= {} if one.preload is None else {"preload_n": one.preload}
+        if one.preload_sd is not None:
+            facts |= {"preload_sd_n": one.preload_sd}
         return dataset(variables, {"time": (("time",), time, "s", "time")}, facts)
 
     def _recording(self, name: str | None) -> Recording:

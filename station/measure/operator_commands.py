@@ -125,6 +125,9 @@ class OperatorCommands:
         return f"noted: {words}"
 
     def _set(self, name: str, value: float) -> str:
+        words = self.points.set_elongation(name, value)
+        if words is not None:
+            return words
         if self.bench.hardware_trigger:
             raise CommandRefused("the device triggers; its settings are the plan's")
         proposal = self.trigger.change(name, value)

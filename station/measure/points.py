@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """What hits mean for the plan: verdict, average, next hit, next point, and back."""
 
-from dataclasses import asdict
+import re
+from dataclasses import asdict, replace
 
 from jointbench.acquisition.file_access.quoting import shown
 from jointbench.acquisition.records.recordings import Verdict
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.further_hits import further_hits
 from jointbench.signal.hits.live_hits import CutHit
+from jointbench.station.bolts.bolt_forces import BoltForces, hit_temperature
 from jointbench.station.measure.asking import Asker
 from jointbench.station.measure.bench_checks import CheckBook
 from jointbench.station.measure.bench_parts import BenchParts
@@ -27,6 +29,8 @@ from jointbench.station.measure.trigger import TriggerWatch
 from jointbench.station.session_events.command_queue import CommandRefused
 from jointbench.station.session_events.hit_events import CheckDone, GainForecast
 
+_ELONGATION = re.compile(r"elongation_(\d{1,4})_um")
+_MICROMETRE = 1e-6  # [m]
 _MORE = 2
 """Further hits that a forecast is made for."""
 
@@ -43,6 +47,13 @@ class Points:
         self._asker = Asker(bench, self._route, trigger)
         self._book = CheckBook(bench.channels)
         self._trials = Trials(bench, record, trigger)
+        joint = bench.plan.table.joint
+        self._forces = BoltForces(
+            bench.plan.table.preload,
+            bench.channels,
+            None if joint is None else joint.bolts,
+        )
+        self._torque: float | None = None
         self._average = GrowingAverage(bench.channels, bench.recorder.sample_rate)
         self.tighten, self.ask = self._route.tighten, self._asker.ask
         self.wait = self._asker.wait
@@ -76,6 +87,9 @@ class Points:
             bench.recorder.trigger_by(self._trigger.on_the_device())
             self._trigger.break_off(bench.recorder.samples)
         self._ledger.keep(self._route.kept)
+        if condition.torque != self._torque:
+            self._forces.loosen()
+            self._torque = condition.torque
         bench.desk.write(run_begun(condition, trial=self.on_trial))
         self._asker.ask()
 
@@ -85,6 +99,10 @@ class Points:
         good = self._ledger.good(condition.number)
         least = weak_force(condition.level, good, self._elsewhere())
         hit = self._trigger.judge(cut, condition.point, least)
+        samples = cut.samples
+        warmth = hit_temperature(self._bench.channels, samples)
+        hit = replace(hit, temperature=warmth)
+        self._forces.hit(samples)
         if self.on_trial:
             self._ledger.enter(self._trials.take(cut, hit), None)
             self._trials.show(cut)
@@ -190,6 +208,34 @@ class Points:
         self.restart()
         return f"{self._route.condition.name} is next"
 
+    def set_elongation(self, name: str, length: float) -> str | None:
+        """Take the elongation of a bolt that the operator read; return what was done.
+
+        Args:
+            name: of the setting, ``elongation_3_um`` for bolt 3.
+            length: [um].
+
+        Returns:
+            None where the setting is another one.
+
+        Raises:
+            CommandRefused: the plan states no stiffness for this bolt.
+        """
+        match = _ELONGATION.fullmatch(name)
+        if match is None:
+            return None
+        bolt = int(match[1])
+        found = self._forces.elongation(bolt, length * _MICROMETRE)
+        if found is None:
+            raise CommandRefused(
+                f"bolt {bolt} has no stiffness in the plan, or has a channel; state "
+                "stiffness = '350 N/um' in its [[preload]]"
+            )
+        return (
+            f"bolt {bolt}: {length:g} um, {found.force / 1e3:.4g} kN "
+            f"(sd {found.force_sd / 1e3:.2g} kN)"
+        )
+
     def restart(self) -> None:
         """Begin a recording again, after a pause or at another point.
 
@@ -271,6 +317,10 @@ class Points:
                 )
                 if not check.passed:
                     self._bench.desk.warn(f"check {check.name}: {check.words}")
+        condition = self._route.condition
+        read = self._forces.preload(condition.name, condition.torque)
+        if read is not None:
+            self._bench.desk.write(read)
         self._route.advance(given_up=given_up)
         if not self._route.over:
             self.begin()

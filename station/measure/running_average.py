@@ -22,6 +22,7 @@ from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 from jointbench.station.measure.running_sums import (
     MOST_KEPT,
+    FewLines,
     KeptSpectra,
     RunningSums,
 )
@@ -81,6 +82,7 @@ class GrowingAverage:
         self._length = 0
         self._windows: dict[HitCut, HammerWindow] = {}
         self._sums: RunningSums | None = None
+        self._few: FewLines | None = None
         self._summed: dict[HitCut, Accepted] = {}
         self._spectra = KeptSpectra(kept)
         self._last: tuple[tuple[HitCut, ...], Frf | None] = ((), None)
@@ -112,7 +114,7 @@ class GrowingAverage:
         if together is None or together >= wanted:
             return None
         without = self._without_each(accepted)
-        position = int(np.argmax(without))
+        position = max(without, key=lambda place: without[place])
         if without[position] < wanted:
             return None
         return Spoiler(
@@ -128,14 +130,18 @@ class GrowingAverage:
         except BadData:
             return None
 
-    def _without_each(self, accepted: Sequence[Accepted]) -> list[float]:
-        """Return the coherence without each hit in turn [-]."""
+    def _without_each(self, accepted: Sequence[Accepted]) -> dict[int, float]:
+        """Return the coherence without the hits that may spoil it [-], by position."""
         sums = self._summed_up(accepted)
-        totals, found = sums.totals(), []
-        for each in accepted:
-            own = self._transformed(each, sums.window)
+        totals, found = sums.totals(), {}
+        cuts = [each.cut for each in accepted]
+        assert self._few is not None
+        for position in self._few.most_likely(cuts, sums):
+            own = self._transformed(accepted[position], sums.window)
             force, response = own.force[0], own.response[0]
-            found.append(coherence_of_others(totals, force, response, sums.frequency))
+            found[position] = coherence_of_others(
+                totals, force, response, sums.frequency
+            )
         return found
 
     def _summed_up(self, accepted: Sequence[Accepted]) -> RunningSums:
@@ -155,14 +161,21 @@ class GrowingAverage:
         ):
             # Under another window or length each hit has other spectra.
             self._spectra.clear()
-            sums = RunningSums(self._transformed(accepted[0], window), window)
+            first = self._transformed(accepted[0], window)
+            sums = RunningSums(first, window)
             self._sums, self._summed = sums, {accepted[0].cut: accepted[0]}
+            self._few = FewLines(sums)
+            self._few.keep(accepted[0].cut, first)
+        assert self._few is not None
         for cut in [cut for cut in self._summed if cut not in wanted]:
             sums.take_out(self._transformed(self._summed.pop(cut), window))
             self._spectra.drop(cut)
+            self._few.drop(cut)
         for cut, each in wanted.items():
             if cut not in self._summed:
-                sums.add(self._transformed(each, window))
+                spectra = self._transformed(each, window)
+                sums.add(spectra)
+                self._few.keep(cut, spectra)
                 self._summed[cut] = each
         return sums
 

@@ -5,13 +5,13 @@ A hit is added or taken out in constant time.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.frf.coherence_without import HitSums
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.signal.frf.coherence_without import HitSums, coherence_of_each
 from jointbench.signal.frf.estimators import pair_of_sums
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.frf import KIND_OF_RESPONSE, Frf
@@ -22,6 +22,13 @@ from jointbench.station.measure.stored_cut import HitCut
 MOST_KEPT = 2**25
 """Size of the spectra that are kept [bytes]: 50 hits of four channels and half a second
 at 51.2 kS/s. Transforming a further one again takes some milliseconds."""
+_LINES = 256
+"""Lines by which the hits that may spoil an average are separated from the others: 2 kB
+a channel and hit. The median of coherence over them is that over all lines to some
+percent of its spread."""
+_WORTH_IT = 5
+"""Hits of which the coherence without them is computed over all lines."""
+_TOGETHER = 64  # hits whose few lines are looked at in one array
 
 
 class RunningSums:
@@ -65,6 +72,10 @@ class RunningSums:
         """Return the sums over all hits."""
         return HitSums(self._force, self._power, self._cross)
 
+    def band(self) -> tuple[float, float]:
+        """Return the band that the hits excite together [Hz]."""
+        return excited_band_of(self._force, self._frequency)
+
     def frf(self) -> Frf:
         """Return the average as H1, with coherence and variance from two hits on."""
         force = np.maximum(self._force, 0.0)
@@ -88,7 +99,7 @@ class RunningSums:
             outputs=self._outputs,
             inputs=(self._point,),
             averages=self.hits,
-            usable_band=excited_band_of(self._force, self._frequency),
+            usable_band=self.band(),
         )
 
     def _change(self, spectra: HitSpectra, sign: int) -> None:
@@ -97,6 +108,67 @@ class RunningSums:
         self._force += sign * np.abs(force) ** 2
         self._power += sign * np.abs(response) ** 2
         self._cross += sign * (response * force.conj())
+
+
+class FewLines:
+    """A few lines of every hit in the sums: which one, left out, helps the others most.
+
+    The coherence of the others over all lines costs milliseconds a hit; over some
+    hundred lines of the band it costs microseconds, and shows as well which hits
+    are worth the whole.
+    """
+
+    def __init__(self, sums: RunningSums) -> None:
+        """Choose the lines, evenly over the band that the first hits excite."""
+        low, high = sums.band()
+        first, past = np.searchsorted(sums.frequency, (low, high), side="left")
+        last = max(int(first), min(int(past), sums.frequency.size - 1))
+        chosen = np.linspace(first, last, min(_LINES, last - int(first) + 1))
+        self._lines: IntArray = np.unique(np.round(chosen).astype(np.int64))
+        self._kept: dict[HitCut, tuple[ComplexArray, ComplexArray]] = {}
+
+    def keep(self, cut: HitCut, spectra: HitSpectra) -> None:
+        """Keep the lines of a hit, in single precision."""
+        force, response = (
+            part[0][..., self._lines].astype(np.complex64)
+            for part in (spectra.force, spectra.response)
+        )
+        self._kept[cut] = force, response
+
+    def drop(self, cut: HitCut) -> None:
+        """Forget a hit."""
+        self._kept.pop(cut, None)
+
+    def most_likely(self, cuts: Sequence[HitCut], sums: RunningSums) -> list[int]:
+        """Return the positions of the hits without which the others agree best.
+
+        Args:
+            cuts: of all hits in the sums.
+            sums: over all lines.
+        """
+        if len(cuts) <= _WORTH_IT:
+            return list(range(len(cuts)))
+        totals, lines = sums.totals(), self._lines
+        low, high = sums.band()
+        some = HitSums(
+            totals.force[lines], totals.response[:, lines], totals.cross[:, lines]
+        )
+        at = sums.frequency[lines]
+        inside = (at >= low) & (at <= high)
+        found = [
+            coherence_of_each(
+                some,
+                np.array([self._kept[cut][0] for cut in part]),
+                np.array([self._kept[cut][1] for cut in part]),
+                inside,
+            )
+            for part in (
+                cuts[first : first + _TOGETHER]
+                for first in range(0, len(cuts), _TOGETHER)
+            )
+        ]
+        order = np.argsort(-np.concatenate(found), kind="stable")
+        return sorted(order[:_WORTH_IT].tolist())
 
 
 @dataclass(slots=True)

@@ -37,6 +37,7 @@ def hit_judged(hit: Hit, *, number: int, new: bool) -> HitJudged:
         verdict=hit.verdict.value,
         measure=hit.measure,
         reason=hit.reason,
+        temperature=hit.temperature,
     )
 
 

@@ -84,6 +84,11 @@ def _hit_json(recording: Recording, hit: Hit) -> dict[str, object]:
         "verdict": hit.verdict.value,
         "measure": float(hit.measure),
         "reason": hit.reason,
+        **(
+            {}
+            if hit.temperature is None
+            else {"temperature_degc": float(hit.temperature)}
+        ),
     }
 
 

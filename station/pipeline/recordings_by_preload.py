@@ -29,6 +29,25 @@ def by_preload(
     return tuple((preload, tuple(group)) for preload, group in groups.items())
 
 
+def preload_sd(recordings: Sequence[Recording]) -> float | None:
+    """Return the standard uncertainty of the preload of recordings [N].
+
+    The largest of them; None where none was measured.
+    """
+    known = [r.preload_sd for r in recordings if r.preload_sd is not None]
+    return max(known, default=None)
+
+
+def preload_words(preload: float | None, recordings: Sequence[Recording]) -> str:
+    """Return the preload of recordings as it is shown, with its sd where measured."""
+    if preload is None:
+        return "Preload not stated"
+    deviation = preload_sd(recordings)
+    if deviation is None:
+        return f"Preload {preload:.6g} N"
+    return f"Preload {preload:.6g} N, measured (sd {deviation:.2g} N)"
+
+
 def at_words(preload: float | None) -> str:
     """Return " at ..." for a preload; empty where it is not known."""
     return "" if preload is None else f" at {preload:g} N"

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.analysis.gap.reassembly.changed_joint import (
     JointChange,
@@ -60,8 +61,23 @@ def reassembly_of(
     kind = "torque" if np.isfinite(data.states.torque).all() else "force"
     asked: FloatArray | None = None
     if level:
-        asked = np.array(sorted(parse_value(one, kind) for one in level))
+        asked = np.array(sorted(_level(one, kind) for one in level))
     return compare_assemblies(data, level=asked, reassembled=opened)
+
+
+def _level(text: str, kind: str) -> float:
+    """Return a torque or a preload above zero.
+
+    Raises:
+        UsageError: it is none.
+    """
+    try:
+        found = parse_value(text, kind)
+    except UnitError as error:
+        raise UsageError(f"--level: {error}") from error
+    if not (np.isfinite(found) and found > 0.0):
+        raise UsageError(f"--level is {text!r}; give one above zero, such as '30 N m'")
+    return found
 
 
 def run_reassembly(

@@ -33,6 +33,7 @@ from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.records.recordings import Quantity
 from jointbench.acquisition.serial_lines.instruments import torque_tester
 from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.schemas.bolt_force_table import BoltForceTable
 from jointbench.station.schemas.positive_quantities import (
     Force,
     Frequency,
@@ -248,6 +249,7 @@ class MeasureTable(StrictTable):
     hits: HitsTable
     joint: PlanJointTable | None = None
     torque: TorqueTable | None = None
+    preload: tuple[BoltForceTable, ...] = Field(default=(), max_length=128)
     sensors: tuple[PlanSensorTable, ...] = Field(min_length=2, max_length=128)
 
     @model_validator(mode="before")
@@ -264,4 +266,23 @@ class MeasureTable(StrictTable):
                 "[torque] reads bolts that no entry names; give torques in [hits], and "
                 "bolts and diameter in [joint]"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _bolt_forces_known(self) -> "MeasureTable":
+        voltages = {s.name for s in self.sensors if s.quantity is Quantity.VOLTAGE}
+        bolts = [table.bolt for table in self.preload]
+        if len(set(bolts)) != len(bolts):
+            raise ValueError("[[preload]] names a bolt twice")
+        if self.joint is not None and max(bolts, default=0) > self.joint.bolts:
+            raise ValueError(
+                f"[[preload]] names bolt {max(bolts)}, [joint] has {self.joint.bolts}"
+            )
+        for table in self.preload:
+            if table.channel is not None and table.channel not in voltages:
+                raise ValueError(
+                    f"[[preload]] of bolt {table.bolt} reads channel "
+                    f"{table.channel!r}; list it in [[sensors]] with quantity = "
+                    "'voltage', sensitivity = '1 V/V', coupling = 'DC'"
+                )
         return self

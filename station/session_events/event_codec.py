@@ -25,6 +25,7 @@ from jointbench.station.session_events.hit_events import (
     CheckDone,
     GainForecast,
     HitJudged,
+    PreloadRead,
     SettingProposed,
     VerdictChanged,
 )
@@ -47,6 +48,7 @@ Event = (
     | SettingProposed
     | CheckDone
     | BoltRead
+    | PreloadRead
     | RunBegun
     | Asked
     | ConditionDone
@@ -71,7 +73,7 @@ _KINDS: Mapping[str, type[Event]] = {
         *(HitJudged, VerdictChanged, SettingProposed, CheckDone, BoltRead),
         *(RunBegun, Asked, ConditionDone, Said, Warned, CableChanged),
         *(SamplesMissing, SessionEnded, SessionBegun, HitAveraged, CommandAnswered),
-        GainForecast,
+        *(GainForecast, PreloadRead),
         *(NoteAdded, PauseChanged, WarningsSeen, ConditionReopened, BoltAsked),
     )
 }

@@ -17,6 +17,7 @@ from jointbench.station.session_events.hit_events import (
     CheckDone,
     GainForecast,
     HitJudged,
+    PreloadRead,
     SettingProposed,
 )
 from jointbench.station.session_events.operator_events import (
@@ -52,6 +53,11 @@ def _words(event: Event) -> str:
             return f"{name} {word}, {value:.3g} (limit {limit:g})"
         case BoltRead(bolt=bolt, raw=raw, kept=kept):
             return f"{bolt} {raw}{'' if kept else ', not kept'}"
+        case PreloadRead(name=name, preload=preload, preload_sd=sd, bolts=bolts):
+            return (
+                f"{name}: {preload / 1e3:.4g} kN, sd {sd / 1e3:.2g} kN, by {len(bolts)}"
+                " bolts"
+            )
         case RunBegun(name=name):
             return name
         case Asked(name=name, done=done, planned=planned):

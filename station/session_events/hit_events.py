@@ -19,6 +19,7 @@ class HitJudged:
         verdict: as in `Verdict`.
         measure: number that the verdict rests on.
         reason: one line.
+        temperature: mean over the hit [degC], None where none is measured.
     """
 
     kind: ClassVar[str] = "hit"
@@ -31,6 +32,7 @@ class HitJudged:
     verdict: str
     measure: float
     reason: str
+    temperature: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,3 +113,24 @@ class BoltRead:
     torque: float
     kept: bool
     raw: str
+
+
+@dataclass(frozen=True, slots=True)
+class PreloadRead:
+    """The preload of the joint by the bolts whose force is measured, at a condition.
+
+    Attributes:
+        name: of the condition.
+        torque: on each bolt [N m], None if not given.
+        preload: of all bolts together [N].
+        preload_sd: its standard uncertainty [N].
+        bolts: of each measured bolt its number ``bolt``, ``force`` and ``force_sd``
+            [N], and ``way``, ``"load washer"`` or ``"elongation"``.
+    """
+
+    kind: ClassVar[str] = "preload"
+    name: str
+    torque: float | None
+    preload: float
+    preload_sd: float
+    bolts: list[dict[str, object]] = field(default_factory=list)

@@ -47,13 +47,15 @@ class TorqueStates:
 
 
 def torque_states(preloads: Sequence[PreloadAnalysis]) -> TorqueStates | None:
-    """Return states by torque where every one states it, else by preload.
+    """Return states by their preload where it was measured, else by torque if stated.
 
     None where fewer than two states can be put in order.
     """
     torques = [_torque(one) for one in preloads]
     known = [t for t in torques if t is not None]
     by_torque = len(known) == len(preloads) and len(set(known)) == len(known)
+    if all(_is_measured(one) for one in preloads):
+        by_torque = False
     title = "torque on each bolt [N m]" if by_torque else "preload [N]"
     values = torques if by_torque else [one.preload for one in preloads]
     pairs = [
@@ -66,6 +68,12 @@ def torque_states(preloads: Sequence[PreloadAnalysis]) -> TorqueStates | None:
     pairs.sort(key=lambda pair: pair[0])
     at = np.array([value for value, _ in pairs])
     return TorqueStates(title, at, tuple(one for _, one in pairs))
+
+
+def _is_measured(one: PreloadAnalysis) -> bool:
+    """Return whether the preload of a state was measured, beside the torque."""
+    recordings = one.modal.recordings
+    return bool(recordings) and all(r.preload_sd is not None for r in recordings)
 
 
 def _torque(one: PreloadAnalysis) -> float | None:

@@ -117,6 +117,34 @@ def test_the_hit_without_which_the_others_agree_is_found_wherever_it_is(
     assert f"coherence {without:.3f} without" in spoiler.reason
 
 
+@pytest.mark.parametrize("position", [0, 37, 89])
+def test_the_spoiler_is_found_among_ninety_hits_by_a_few_lines_of_each(
+    position: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only the likeliest few are looked at over all lines, and no spectra are kept."""
+    looked_at = []
+    real = measure_average.coherence_of_others
+
+    def counted(*given: object) -> float:
+        looked_at.append(given)
+        return real(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(measure_average, "coherence_of_others", counted)
+    accepted = [hit(n) for n in range(90)]
+    accepted[position] = hit(99, frequency=300.0)
+    growing = GrowingAverage(CHANNELS, RATE, kept=1)
+    together = mean_coherence(growing.frf(accepted))
+    others = at_once(accepted[:position] + accepted[position + 1 :])
+    without = mean_coherence(others)
+    assert together is not None
+    assert without is not None
+    spoiler = growing.spoiler(accepted, wanted=(together + without) / 2)
+    assert spoiler is not None
+    assert spoiler.position == position
+    assert f"coherence {without:.3f} without" in spoiler.reason
+    assert len(looked_at) <= 5
+
+
 def test_hits_that_agree_have_no_spoiler_and_no_hits_have_no_average() -> None:
     """Nor do two, of which either may be the one."""
     growing = GrowingAverage(CHANNELS, RATE)
