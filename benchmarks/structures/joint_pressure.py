@@ -175,8 +175,8 @@ def _complementary(
         inside = matrix[np.ix_(on, on)] + np.diag(1 / slope[on])
         count = int(on.sum())
         system = np.block([[inside, -np.ones((count, 1))], [area[on], np.zeros(1)]])
-        misfit = free - approach - matrix @ pressure
-        right = np.append(misfit[on] + constant, force - area @ pressure)
+        residual = free - approach - matrix @ pressure
+        right = np.append(residual[on] + constant, force - area @ pressure)
         # The constant is the approach of the plates: its change is solved for.
         answer = np.linalg.solve(system, right)
         new = pressure.copy()

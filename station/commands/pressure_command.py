@@ -19,7 +19,7 @@ def pressure_command(
     ],
     report: Annotated[
         Path | None,
-        typer.Option(metavar="PATH", help="Page with the pressure map (.html)."),
+        typer.Option(metavar="PATH", help="Report with the pressure map (.html)."),
     ] = None,
     points: Annotated[
         Path | None,

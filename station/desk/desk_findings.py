@@ -84,7 +84,7 @@ def _of_file(path: Path, stem: str) -> Iterator[Findings]:
 
 
 def _finite(text: str) -> float | None:
-    """Return a number of a file; None for one that JSON cannot carry to a page."""
+    """Return a number of a file; None for one that JSON cannot hold."""
     value = float(text)
     return value if math.isfinite(value) else None
 

@@ -18,7 +18,7 @@ _Area = Annotated[float, with_unit("area"), Field(gt=0)]
 
 
 class BoltTable(StrictTable):
-    """A bolt: where it is along the two tangents, what it pulls, what it presses on."""
+    """A bolt: where it is along the two tangents, its force, what it presses on."""
 
     position: tuple[_Length, _Length]
     preload: Annotated[float, with_unit("force"), Field(ge=0)] | None = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page of a joint by its pressure: map with its open part, and totals."""
+"""The report of a joint by its pressure: map with its open part, and totals."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -30,7 +30,7 @@ _ACROSS = 100
 
 
 def pressure_report(found: JointPressure, name: str) -> Report:
-    """Return the page of a joint by its pressure."""
+    """Return the report of a joint by its pressure."""
     x, y, field = _map(found)
     shown = np.where(field < OPEN * found.mean, np.nan, field) / 1e6
     picture = Plot(

@@ -71,7 +71,7 @@ def run_pressure(
 
     Args:
         model: structure model (TOML) with a table [pressure].
-        report: page to write (.html).
+        report: to be written (.html).
         points: table of the points to write (.csv).
         json_target: JSON to write.
     """

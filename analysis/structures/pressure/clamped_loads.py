@@ -144,7 +144,7 @@ def _ring(bolt: ClampBolt) -> tuple[Patch, ...]:
 def _thread_load(
     structure: Structure, face: JointFace, body: str, bolt: ClampBolt
 ) -> FloatArray:
-    """Return the pull of a thread of 1 N, even over its length, shape (n_free,)."""
+    """Return the force of a thread of 1 N, even over its length, shape (n_free,)."""
     normal = face.frame[0]
     base = float(face.points.position[0] @ normal) * normal
     base = base + np.asarray(bolt.position, float) @ face.frame[1:]
@@ -186,5 +186,5 @@ def weight_load(structure: Structure, direction: FloatArray) -> FloatArray:
             "weight needs a support: nothing holds the bodies; add [[supports]], or "
             "leave gravity out"
         )
-    pull = np.tile(STANDARD_GRAVITY * direction / length, structure.nodes.shape[0])
-    return np.asarray(structure.mass @ pull[structure.free])
+    weights = np.tile(STANDARD_GRAVITY * direction / length, structure.nodes.shape[0])
+    return np.asarray(structure.mass @ weights[structure.free])

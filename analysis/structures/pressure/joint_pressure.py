@@ -118,8 +118,8 @@ def joint_pressure(
     points = _points(structure, number, case.bolts)
     weight = None if case.gravity is None else weight_load(structure, case.gravity)
     clamp = sum(one.preload for one in case.bolts)
-    pull = 0.0 if weight is None else float(np.abs(weight).sum())
-    if not clamp + pull > 0:
+    weights = 0.0 if weight is None else float(np.abs(weight).sum())
+    if not clamp + weights > 0:
         raise BadData(
             f"nothing presses joint {joint!r}: no bolt has a preload and there is no "
             "gravity; give a preload or a torque"
@@ -128,7 +128,7 @@ def joint_pressure(
     sizes = [bolt.preload for bolt in case.bolts]
     if weight is not None:
         columns, sizes = [*columns, weight], [*sizes, 1.0]
-    guess = (clamp or pull) / points.total
+    guess = (clamp or weights) / points.total
     law = case.law(_GRID * guess, 1.0)
     springs = float(law.stiffness(np.array(guess)))
     bodies = interface_compliance(structure, number, columns, springs)

@@ -94,7 +94,7 @@ def press(
             "or the law is too steep; check loads, supports and the law's numbers"
         )
     raise BadData(
-        "nothing holds the surfaces together: the loads pull them apart; check bolts "
+        "nothing holds the surfaces together: the loads separate them; check bolts "
         "and the direction of gravity"
     )
 

@@ -24,7 +24,7 @@ _MEASURED = "The session is being measured. Its poles can be chosen once it has 
 
 
 class DeskAfterSession:
-    """Lays a session on the desk once its file is whole."""
+    """Opens a session on the desk once its file is whole."""
 
     def __init__(self, geometry: Path | None, screens: OpenScreens) -> None:
         """Begin while the session is measured.

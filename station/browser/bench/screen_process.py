@@ -105,7 +105,7 @@ class ScreenProcess:
         self._listening.close()
 
     def finished(self, session: Path) -> None:
-        """Tell the server, and the next one, that the file of the session is whole."""
+        """Notify this server and the next that the file of the session is whole."""
         self._serving = replace(self._serving, session=session, finished=True)
         with suppress(OSError):
             if self._link is not None:

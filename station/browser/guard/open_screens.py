@@ -11,18 +11,18 @@ if TYPE_CHECKING:
 class OpenScreens:
     """Counts the sockets of a screen's pages."""
 
-    def __init__(self, told: Callable[[int], None] = lambda count: None) -> None:
+    def __init__(self, changed: Callable[[int], None] = lambda count: None) -> None:
         """Begin without one.
 
         Args:
-            told: takes the number whenever it changes.
+            changed: takes the number whenever it changes.
         """
-        self._told, self._count = told, 0
+        self._changed, self._count = changed, 0
 
     def change(self, by: int) -> None:
         """Count a socket that opened, 1, or closed, -1."""
         self._count += by
-        self._told(self._count)
+        self._changed(self._count)
 
     async def hold(self, socket: "WebSocket") -> None:
         """Count a page that needs no news, until it leaves."""

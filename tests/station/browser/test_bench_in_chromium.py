@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 
-# A model of two rigid bodies cannot bend; `gap` is to say so, with one effect tried.
+# A model of two rigid bodies cannot bend; `gap` is to end as unknown, with one effect
+# tried.
 MODEL = f"""
 [bodies.lower]
 mass = "9.75 kg"
@@ -197,7 +198,7 @@ def reported(page: "Page", folder: Path) -> None:
 def test_a_browser_that_is_killed_loses_no_hit(
     chromium: "Browser", tmp_path: Path
 ) -> None:
-    """The whole process dies; `measure` goes on, and a new browser sees the same."""
+    """The whole process dies; `measure` continues, and a new browser sees the same."""
     from playwright.sync_api import Error
 
     mark = f"--killed-by-a-test={tmp_path.name}"

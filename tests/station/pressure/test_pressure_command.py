@@ -90,7 +90,7 @@ def test_python_and_the_command_agree(tmp_path: Path) -> None:
 
 
 def test_a_law_of_the_papers_needs_its_reference_area(tmp_path: Path) -> None:
-    """With it the law is one per area; without it one line says what to give."""
+    """With it the law is one per area; without it one line names what to give."""
     begin, end = LAW.index("[pressure.law]"), LAW.index("[[pressure.bolts]]")
     law = LAW[begin:end]
     bare = model(tmp_path, (law, ""), ("[pressure]", CONTACT + "\n[pressure]"))
