@@ -33,7 +33,7 @@ const answer = el("p", { class: "answer", "aria-live": "polite", id: "answer" })
 const points = el("section", { class: "panel", "aria-label": "Points" });
 const channels = el("div", { class: "row", role: "group", "aria-label": "Channel that is drawn" });
 const sound = el("button", { type: "button", class: "sound", click: allowSound }, "Sound on");
-const scopeBox = el("section", { class: "panel" }, el("h2", {}, "Signals"));
+const scopeBox = el("section", { class: "panel across" }, el("h2", {}, "Signals"));
 
 const main = byId("content");
 main.classList.add("measure");

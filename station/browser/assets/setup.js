@@ -21,7 +21,7 @@ const points = el("div");
 const places = new GeometryView();
 const settings = new SettingPlots();
 const answer = el("p", { class: "answer", "aria-live": "polite", id: "answer" });
-const scopeBox = el("section", { class: "panel wide" }, el("h2", {}, "Signals"));
+const scopeBox = el("section", { class: "panel across" }, el("h2", {}, "Signals"));
 
 fill(
   byId("content"),
@@ -29,7 +29,7 @@ fill(
   el("section", { class: "panel", "aria-label": "Session" }, facts),
   answer,
   el("div", { class: "grid wide" },
-    el("section", { class: "panel" }, el("h2", {}, "Channels"),
+    el("section", { class: "panel across" }, el("h2", {}, "Channels"),
       el("div", { class: "scroll" }, el("table", { class: "lines" },
         el("thead", {}, el("tr", {}, ...["channel", "level", "", "range", "point", "sensor", "TEDS", "calibrated"]
           .map((name) => el("th", { scope: "col" }, name)))),

@@ -81,6 +81,7 @@ def hit_counts(running: Bench) -> dict[str, int]:
     return {one.value: verdicts.count(one) for one in Verdict}
 
 
+@pytest.mark.heavy(reason="a whole session, its poles, `gap` and the report, in one")
 def test_from_the_first_hit_to_the_report_by_keys(
     chromium: "Browser", tmp_path: Path
 ) -> None:
