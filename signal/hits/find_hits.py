@@ -64,7 +64,8 @@ def find_hits(recording: Recording, criteria: HitCriteria | None = None) -> Reco
     """
     criteria = criteria or HitCriteria()
     row = recording.row(Quantity.FORCE)
-    force = recording.samples[row] - np.median(recording.samples[row])
+    force = np.array(recording.samples[row])
+    force -= np.median(force)
     level = _trigger_level(force, criteria, recording.name)
     dead = round(criteria.dead_time * recording.sample_rate)
     triggers = trigger_indices(

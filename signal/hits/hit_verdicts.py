@@ -74,9 +74,10 @@ def judge(
     """
     peaks = [float(force[trigger:stop].max()) for _, trigger, stop in bounds]
     usual = float(np.median(peaks))
+    floor = _NOISE_CREST * noise_level(force) if bounds else 0.0
     return tuple(
         _overload(recording, bound, limits, peak)
-        or _double(recording, force, bound, limits, peak)
+        or _double(recording, force, bound, max(limits.double_ratio, floor / peak))
         or _late(recording, bound, shortest, peak)
         or _weak(usual, limits, peak)
         or _good(recording, force, bound, peak)
@@ -146,7 +147,8 @@ def longest_flat_top(samples: FloatArray) -> int:
 def noise_level(samples: FloatArray) -> float:
     """Estimate the sd of the noise between sparse pulses, same unit as `samples`."""
     centred = samples - np.median(samples)
-    return float(np.median(np.abs(centred))) / _MAD_OF_NORMAL
+    np.abs(centred, out=centred)
+    return float(np.median(centred, overwrite_input=True)) / _MAD_OF_NORMAL
 
 
 def _runs_at(samples: FloatArray, sign: float, top: float) -> list[tuple[int, float]]:
@@ -237,12 +239,11 @@ def _double(
     recording: Recording,
     force: FloatArray,
     bound: tuple[int, int, int],
-    limits: HitLimits,
-    peak: float,
+    limit: float,
 ) -> Judged | None:
     start, trigger, stop = bound
+    peak = float(force[trigger:stop].max())
     ratio, samples = second_peak(force[start:stop], trigger - start)
-    limit = max(limits.double_ratio, _NOISE_CREST * noise_level(force) / peak)
     if ratio < limit:
         return None
     between = 1e3 * samples / recording.sample_rate
