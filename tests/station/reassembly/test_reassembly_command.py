@@ -9,8 +9,8 @@ import pytest
 import jointbench as jb
 from jointbench.station.main import app
 from jointbench.station.screen.exit_codes import (
-    EXIT_BAD_DATA,
     EXIT_QUALITY,
+    EXIT_USAGE,
     exit_code,
 )
 
@@ -93,7 +93,7 @@ def test_a_level_of_another_quantity_is_refused(
     run: Callable[..., int],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    assert run(EXAMPLE, "--level", "3 kN") == EXIT_BAD_DATA
+    assert run(EXAMPLE, "--level", "3 kN") == EXIT_USAGE
     assert "a unit of force, not of torque" in capsys.readouterr().err
 
 
