@@ -18,10 +18,12 @@ _WASHER = "measure the preload with a washer"
 
 
 def _prevailing(values: FloatArray, joint: LoadedJoint) -> FloatArray:
-    """Subtract the torque that loads no bolt."""
+    """Subtract the torque that loads no bolt; NaN where no torque is left."""
     states = joint.data.states
     torque = np.where(states.by_torque, states.torque, np.inf)
-    return np.asarray(np.log1p(-values[0] / torque))
+    share = values[0] / torque
+    open_joint = np.full(torque.shape, np.nan)
+    return np.asarray(np.log1p(-share, out=open_joint, where=share < 1.0))
 
 
 def _falling(values: FloatArray, joint: LoadedJoint) -> FloatArray:

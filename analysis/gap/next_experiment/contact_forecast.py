@@ -50,6 +50,8 @@ def rank_series(
     found = []
     for index, series in enumerate(torque_series(bench.data.states)):
         forecasts = forecasts_of(bench, kept, series, accepted=accepted)
+        if len(forecasts) < 2:
+            continue
         gain = expected_gain(forecasts, bench.policy.rival_score)
         found.append(
             RankedExperiment(series.name, series.words, series.minutes, gain, index)
@@ -62,6 +64,9 @@ def forecasts_of(
 ) -> list[Forecast]:
     """Return what every explanation expects of a series.
 
+    One by which the series leaves the joint open (a prevailing torque above those of
+    the series) has no stiffness to forecast and is left out.
+
     Args:
         bench: of the fits.
         fits: explanations.
@@ -70,7 +75,8 @@ def forecasts_of(
     """
     data, fresh = with_series(bench.data, series)
     wider = _extended(bench, data)
-    return [_forecast(bench, wider, fit, fresh, accepted=accepted) for fit in fits]
+    found = [_forecast(bench, wider, fit, fresh, accepted=accepted) for fit in fits]
+    return [f for f in found if np.all(np.isfinite(f.covariance))]
 
 
 def _extended(bench: ContactBench, data: JointData) -> ContactBench:

@@ -101,7 +101,7 @@ def estimate_scatter(
     found = _within_repeats(found, seen)
     found = _with_systematic(found, seen, policy)
     trends = found.problem
-    found = _correlated(found, problem.systematic)
+    found = _correlated(found, problem.systematic, seen)
     found = _within_repeats(found, seen)
     size = np.where(found.size < policy.least_scatter, 0.0, found.size)
     problem, outstanding = found.problem, found.outstanding
@@ -193,13 +193,15 @@ def _less(problem: SizeProblem, outstanding: Sequence[tuple[int, int]]) -> SizeP
     return replace(problem, records=problem.records.moved(values))
 
 
-def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
+def _correlated(found: _Estimate, intercepts: FloatArray, seen: HitsSeen) -> _Estimate:
     """Return the estimate with correlated hits and no trends, if that is likelier.
 
     A slow drift of the scatter resembles a trend; the restricted likelihood, which
-    charges for each systematic value, decides. Of the correlations that the records do
-    not exclude the largest is taken: a few hits hardly resolve it, and the mean of hits
-    with a long memory is the least certain.
+    charges for each systematic value, decides. It charges a trend as if one of 100 %
+    were as likely as none; a joint that loosens does so by less, and what its trend is
+    overcharged is given back. Of the correlations that the records do not exclude the
+    largest is taken: a few hits hardly resolve it, and the mean of hits with a long
+    memory is the least certain.
     """
     size = found.size
     if not np.any(size > 0.0) or len(found.problem.records.along) > (
@@ -207,6 +209,7 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
     ):
         return found
     least = found.problem.deviance(size) - RESIDUALS.correlation_gain
+    least += 2.0 * _joint_trends(found, seen) * np.log(RESIDUALS.usual_trend)
     own_hits = _hits(intercepts.shape, found.outstanding)
     plain = replace(
         found.problem, systematic=np.concatenate([intercepts, own_hits], axis=2)
@@ -232,6 +235,18 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
             if problem.deviance(own) < least:
                 best = _Estimate(problem, own, found.outstanding)
     return best
+
+
+def _joint_trends(found: _Estimate, seen: HitsSeen) -> int:
+    """Return how many of the systematic values are trends of the stiffness of a joint.
+
+    All records deviate along a trend, those of the middle hit aside.
+    """
+    systematic = found.problem.systematic
+    beyond = systematic[:, :, systematic.shape[1] :]
+    trends = np.count_nonzero(beyond, axis=0) > 1
+    columns = np.isin(found.problem.direction, list(seen.joints))
+    return int(np.count_nonzero(trends[columns]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -146,6 +146,13 @@ class ResidualSettings:
         "loss at the sizes of hits without correlation, above which correlated hits "
         "are not tried",
     )
+    usual_trend: float = numerical(
+        0.01,
+        "-, samples",
+        "prior sd of a trend of the stiffness of a joint over the hits",
+        "singles 430004 and 900012 of benchmarks/gap/scatter.py: a loosening of 1e-5 a "
+        "hit passed for correlated scatter",
+    )
     correlation_gain: float = numerical(
         2.0,
         "-2 log likelihood",

@@ -1,5 +1,6 @@
 """Expected gain in closed cases, candidate series, and the plan that is written."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -82,6 +83,21 @@ def test_a_higher_torque_separates_a_compliance_from_an_exponent() -> None:
     found = rank_series(done.bench, fits, accepted=True)
     shares = {one.name: one.expected.decided for one in found}
     assert shares["to 4 x the highest"] > shares["repeat"]
+
+
+def test_a_series_below_a_prevailing_torque_is_no_forecast_of_it() -> None:
+    """The joint stays open there: the other explanations are ranked without it."""
+    done = diagnose_contact(short_joint(), LAW)
+    tests = screen(done.bench, done.base, done.bench.candidates)
+    fits = {
+        c.effect.name: fit_effect(done.bench, done.base, tests, c)
+        for c in done.bench.candidates
+        if c.effect.name in {"series_compliance", "law_exponent", "prevailing_torque"}
+    }
+    stuck = fits["prevailing_torque"]
+    x = np.append(stuck.x[: stuck.n_base], 50.0)
+    fits["prevailing_torque"] = replace(stuck, x=x)
+    assert rank_series(done.bench, list(fits.values()), accepted=True)
 
 
 def test_two_sessions_are_one_joint_with_more_assemblies() -> None:
