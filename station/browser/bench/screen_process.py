@@ -33,8 +33,10 @@ _VIEW = "browser"
 _BRIEF = 3.0
 """A server that ends sooner is not worth another one at once [s]."""
 _MOST_BRIEF = 3
-_UNWATCHED = 5.0
+_UNWATCHED = 10.0
 """Without an open screen after which a finished session is left [s]."""
+_OPENING = 60.0
+"""After its link was used, or its server died, in which a screen is awaited [s]."""
 _LOOK = 0.2  # [s]
 _LAST_WORD = 5.0  # [s]
 
@@ -86,6 +88,7 @@ class ScreenProcess:
         self._watched = 0
         self._link: Connection | None = None
         self._unwatched_since = time.monotonic()
+        self._opening_until = 0.0
         self._thread = threading.Thread(target=self._keep, name="screen", daemon=True)
         self._thread.start()
 
@@ -115,10 +118,13 @@ class ScreenProcess:
         """Return once no screen has been open for some seconds, or on Ctrl-C."""
         self._unwatched_since = time.monotonic()
         with suppress(KeyboardInterrupt):
-            while self._thread.is_alive() and (
-                self._watched or time.monotonic() - self._unwatched_since < _UNWATCHED
-            ):
+            while self._thread.is_alive() and self._in_use():
                 time.sleep(_LOOK)
+
+    def _in_use(self) -> bool:
+        now = time.monotonic()
+        left = now - self._unwatched_since >= _UNWATCHED and now >= self._opening_until
+        return self._watched > 0 or not left
 
     def _keep(self) -> None:
         brief = 0
@@ -149,6 +155,9 @@ class ScreenProcess:
                     self._take(link, link.recv())
         with suppress(OSError):
             link.close()
+        if self._watched:
+            # They connect to the next server.
+            self._opening_until = time.monotonic() + _OPENING
         self._watch(0)
         process.join(_LAST_WORD)
         if process.is_alive():
@@ -158,6 +167,7 @@ class ScreenProcess:
         if isinstance(news, Watched):
             self._watch(news.count)
         elif isinstance(news, Relinked):
+            self._opening_until = time.monotonic() + _OPENING
             self.access.token = news.token
             self._serving = replace(self._serving, token=news.token)
             self._say(f"link for another browser: {self.access.link('/measure')}")
@@ -166,7 +176,9 @@ class ScreenProcess:
 
     def _watch(self, count: int) -> None:
         self._watched = count
-        if not count:
+        if count:
+            self._opening_until = 0.0
+        else:
             self._unwatched_since = time.monotonic()
 
     def _queued(self, content: Mapping[str, object]) -> Mapping[str, Any]:

@@ -19,6 +19,7 @@ from bench_runs import (
     answered,
     bench,
     opened,
+    paused_after,
     typed,
 )
 
@@ -91,6 +92,7 @@ def test_from_the_first_hit_to_the_report_by_keys(
     was killed, the screen shows the same session, which continued meanwhile.
     """
     with bench(tmp_path, "--json", str(tmp_path / "s.json")) as running:
+        paused_after(running, hits=2)
         with opened(chromium, running.link()) as page:
             measured_by_keys(page, running)
             page.keyboard.press("Tab")  # from the note's field to the page
@@ -111,9 +113,12 @@ def test_from_the_first_hit_to_the_report_by_keys(
 
 def measured_by_keys(page: "Page", running: Bench) -> None:
     """Pause, note, reject, reload; the server dies; the session ends."""
-    page.locator("#verdict", has_text="HIT 2").wait_for()
+    page.locator("#task", has_text="PAUSE").wait_for()
     assert "token" not in page.url
     page.keyboard.press("Space")
+    answered(page, "the session continues")
+    page.keyboard.press("Space")
+    answered(page, "hits are ignored until the session continues")
     page.locator("#task", has_text="PAUSE").wait_for()
     page.keyboard.press("a")
     answered(page, "not done: the session pauses")
@@ -205,12 +210,15 @@ def test_a_browser_that_is_killed_loses_no_hit(
     mark = f"--killed-by-a-test={tmp_path.name}"
     found = shutil.which("chromium") or shutil.which("chromium-browser")
     with bench(tmp_path, "--json", str(tmp_path / "s.json")) as running:
+        paused_after(running, hits=3)
         first = chromium.browser_type.launch(
             executable_path=found, args=[*CHROMIUM_FLAGS, mark]
         )
         page = first.new_page()
         page.goto(running.link())
-        page.locator("#verdict", has_text="HIT 3").wait_for(timeout=SOON)
+        page.locator("#task", has_text="PAUSE").wait_for(timeout=SOON)
+        page.keyboard.press("Space")
+        page.locator("#answer", has_text="the session continues").wait_for(timeout=SOON)
         os.kill(process_with(mark), signal.SIGKILL)
         with pytest.raises(Error):
             page.reload()
