@@ -15,7 +15,11 @@ from jointbench.analysis.gap.chain.joint_over_preload import BoltedStates
 from jointbench.analysis.gap.chain.locate_link import Chain, locate
 from jointbench.analysis.gap.contact_bench.joint_states import JointFacts
 from jointbench.analysis.gap.contact_bench.preload_law import LawParameter
-from jointbench.analysis.gap.contact_bench.preload_laws import PowerPreloadLaw
+from jointbench.analysis.gap.contact_bench.preload_laws import (
+    AsperityPreloadLaw,
+    PowerPreloadLaw,
+    asperity_parameters,
+)
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 
 PRELOAD = np.array([2e3, 4e3, 8e3, 16e3, 32e3, 64e3])
@@ -97,3 +101,25 @@ def test_two_faults_are_found_at_two_links() -> None:
     assert [p.links for p in location.places] == [
         (ChainLink.CONTACT, ChainLink.STRUCTURE)
     ]
+
+
+def test_a_cut_off_and_a_compliance_are_compared_as_effects() -> None:
+    """Five torques of a compliant joint; a free shape of ln k would cost four times."""
+    preload = np.array([18094.3, 30474.8, 49498.4, 78355.8, 132251.6])
+    log_k = np.array([24.46652, 24.88012, 25.24473, 25.52683, 25.84701])
+    facts = JointFacts(
+        *(3, 0.01, 0.2, 0.15, 0.02236, 0.2, 0.0085088, 2.507561e10, 0.28),
+        *(0.0266283, 0.0141846, 0.0077633),
+    )
+    moments = asperity_parameters(
+        (1.155e-6, 0.05), (0.0475776, 0.08), (4121.18, 0.1), (2.507561e10, 0.03)
+    )
+    own = AsperityPreloadLaw(moments, facts.area, facts.poisson)
+    reading = JointReading(log_k, 9e-6 * np.eye(5), GOOD)
+    states = BoltedStates("made", facts, preload, np.zeros(5, dtype=np.int64))
+    made = Chain(SurfaceReading(own, GOOD), StructureReading(reading, None), states)
+    assert [p.links for p in locate(made).places] == [(ChainLink.SURFACE,)]
+    found = diagnose_chain(made)
+    assert found.finding is Finding.AMBIGUOUS
+    assert "scale_cut@surface" in found.names
+    assert "series_compliance@link:joint" in found.names
