@@ -5,10 +5,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.analysis.gap.chain.chain_records import ChainLink, Hypothesis
+from jointbench.analysis.gap.chain.chain_records import ChainLink, Hypothesis, LinkTest
 from jointbench.analysis.gap.chain.contact_link import CUT
 from jointbench.analysis.gap.chain.joint_over_preload import joint_data
-from jointbench.analysis.gap.chain.locate_link import Chain, Location, locate
+from jointbench.analysis.gap.chain.locate_link import (
+    Chain,
+    Location,
+    locate,
+    with_explained,
+)
 from jointbench.analysis.gap.chain.several_causes import (
     SeveralCauses,
     add_causes,
@@ -89,9 +94,24 @@ def diagnose_chain(
     several = None
     if not outcome.base_acceptance.passed and not too_few(data):
         several = _causes(outcome, final, contact, progress)
+    if (test := _explained(outcome, final)) is not None:
+        location = with_explained(location, test)
     location = _decided(location, chain, contact)
     found = ChainDiagnosis(chain, location, contact, several, Finding.NONE, (), "", "")
     return _concluded(found)
+
+
+def _explained(outcome: SearchOutcome, bench: ContactBench) -> LinkTest | None:
+    """Return the test of the best effect of the contact that is accepted, if one is."""
+    own = [f for f in outcome.level if CUT not in {c.effect.name for c in f.candidates}]
+    if not (outcome.acceptance.passed and own and own[0].candidates):
+        return None
+    best = own[0]
+    charge = bench.policy.parameter_charge * (best.x.size - best.n_base)
+    words = "with " + " + ".join(c.effect.name for c in best.candidates)
+    return LinkTest(
+        best.cost, bench.blocks.dof, passed=True, reason=words, charge=charge
+    )
 
 
 def _decided(location: Location, chain: Chain, contact: ContactDiagnosis) -> Location:
