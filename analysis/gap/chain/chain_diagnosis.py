@@ -5,10 +5,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.analysis.gap.chain.chain_records import ChainLink
+from jointbench.analysis.gap.chain.chain_records import ChainLink, Hypothesis, LinkTest
 from jointbench.analysis.gap.chain.contact_link import CUT
 from jointbench.analysis.gap.chain.joint_over_preload import joint_data
-from jointbench.analysis.gap.chain.locate_link import Chain, Location, locate
+from jointbench.analysis.gap.chain.locate_link import (
+    Chain,
+    Location,
+    locate,
+    with_explained,
+)
 from jointbench.analysis.gap.chain.several_causes import (
     SeveralCauses,
     add_causes,
@@ -89,9 +94,24 @@ def diagnose_chain(
     several = None
     if not outcome.base_acceptance.passed and not too_few(data):
         several = _causes(outcome, final, contact, progress)
+    if (test := _explained(outcome, final)) is not None:
+        location = with_explained(location, test)
     location = _decided(location, chain, contact)
     found = ChainDiagnosis(chain, location, contact, several, Finding.NONE, (), "", "")
     return _concluded(found)
+
+
+def _explained(outcome: SearchOutcome, bench: ContactBench) -> LinkTest | None:
+    """Return the test of the best effect of the contact that is accepted, if one is."""
+    own = [f for f in outcome.level if CUT not in {c.effect.name for c in f.candidates}]
+    if not (outcome.acceptance.passed and own and own[0].candidates):
+        return None
+    best = own[0]
+    charge = bench.policy.parameter_charge * (best.x.size - best.n_base)
+    words = "with " + " + ".join(c.effect.name for c in best.candidates)
+    return LinkTest(
+        best.cost, bench.blocks.dof, passed=True, reason=words, charge=charge
+    )
 
 
 def _decided(location: Location, chain: Chain, contact: ContactDiagnosis) -> Location:
@@ -100,15 +120,32 @@ def _decided(location: Location, chain: Chain, contact: ContactDiagnosis) -> Loc
     A cut-off has one parameter, a free shape of ln k has several: their scores do not
     compare as those of two effects do.
     """
-    pair = {(ChainLink.SURFACE,), (ChainLink.CONTACT,)}
-    if {one.links for one in location.places} != pair or not chain.surface.test.passed:
+    cut = (ChainLink.SURFACE,)
+    both = (cut, (ChainLink.CONTACT,))
+    if not any(one.links in both for one in location.places):
         return location
-    if contact.found.verdict is not Finding.NAMED:
+    restored = {h.links: h for h in location.hypotheses if h.restored}
+    if not chain.surface.test.passed or not all(links in restored for links in both):
         return location
-    cut = any(e.name == CUT for e in contact.found.effects)
-    link = ChainLink.SURFACE if cut else ChainLink.CONTACT
-    kept = tuple(one for one in location.places if one.links == (link,))
-    return replace(location, places=kept)
+    shown = _links_of(contact)
+    if not shown:
+        return location
+    others = tuple(one for one in location.places if one.links not in both)
+    kept = tuple(restored[links] for links in both if links in shown)
+    return replace(location, places=(*kept, *others))
+
+
+def _links_of(contact: ContactDiagnosis) -> set[tuple[ChainLink, ...]]:
+    """Return the links of the effects that the contact bench names or cannot separate.
+
+    None where it names no effect.
+    """
+    if contact.found.verdict not in (Finding.NAMED, Finding.AMBIGUOUS):
+        return set()
+    return {
+        (ChainLink.SURFACE if e.name == CUT else ChainLink.CONTACT,)
+        for e in contact.found.effects
+    }
 
 
 def _causes(
@@ -158,7 +195,7 @@ def _concluded(found: ChainDiagnosis) -> ChainDiagnosis:
         return replace(
             found,
             finding=Finding.AMBIGUOUS,
-            names=tuple(n for place in places for n in _names(found, place.links)),
+            names=tuple(n for place in places for n in _rival_names(found, place)),
             reason=f"the disagreement enters at {words}: their scores are too close",
             experiment=_experiment(found, places[0].links),
         )
@@ -226,6 +263,15 @@ def _names(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> tuple[str, ..
         else:
             names += [f"{e.name}@{e.site}" for e in found.contact.found.effects]
     return tuple(names)
+
+
+def _rival_names(found: ChainDiagnosis, place: Hypothesis) -> tuple[str, ...]:
+    """Return the names at a place beside others: a cut-off is one of the surface."""
+    if place.links != (ChainLink.CONTACT,):
+        return _names(found, place.links)
+    effects = [e for e in found.contact.found.effects if e.name != CUT]
+    own = tuple(f"{e.name}@{e.site}" for e in effects)
+    return own or _names(found, place.links)
 
 
 def _basis(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> str:

@@ -27,6 +27,15 @@ class ChainBenchSettings:
         "as in the engine for hits",
         _SWEPT,
     )
+    further_gain: float = decision(
+        30.0,
+        "score",
+        "gain of a further cause below which a set is not named",
+        "twice the least difference of rivals: chains 8217 and 8225 of "
+        "benchmarks/gap/chain_score.py, where a formula that is not quite the physics "
+        "called for a second cause",
+        _SWEPT,
+    )
     reading_sd: float = numerical(
         0.003,
         "-",
@@ -69,8 +78,20 @@ class ChainBenchSettings:
     scan_points: int = numerical(
         41, "points", "stiffnesses at which the hits are predicted first"
     )
-    scan_window: float = numerical(
-        0.01, "s", "window of these predictions", "as the second of a base fit"
+    scan_windows: tuple[float, ...] = numerical(
+        (0.003, 0.01),
+        "s",
+        "windows of these predictions",
+        "chains 8209 and 8269 of benchmarks/gap/chain_score.py: in 10 ms a joint that "
+        "is far too stiff fits as well as the right one",
+    )
+    scan_starts: int = numerical(
+        4, "starts", "minima along the stiffness from which a state is fitted at most"
+    )
+    least_explained: float = numerical(
+        1.5,
+        "-",
+        "chi2 over dof of a fit of a state after which no other start is tried",
     )
     least_hits: int = numerical(
         2, "hits", "of one preload, below which it gives no stiffness"

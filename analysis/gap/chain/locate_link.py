@@ -7,7 +7,7 @@ where the disagreement enters; places that restore them equally well are ambiguo
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from jointbench.analysis.gap.chain.chain_records import (
@@ -112,6 +112,33 @@ def locate(chain: Chain) -> Location:
         restored = [h for h in several if h.restored and len(h.links) == count]
         fewest = fewest or restored
     return Location((*single, *several), _best(fewest))
+
+
+def with_explained(location: Location, test: LinkTest) -> Location:
+    """Return the places where effects that explain the joint are a discrepancy, too.
+
+    A free shape of ln k does not bend as every effect does, and pays for more
+    parameters than most have.
+
+    Args:
+        location: by free shapes.
+        test: of the best effects of the contact, accepted.
+    """
+    hypotheses = tuple(
+        replace(one, tests=(one.tests[0], _better(one.tests[1], test), one.tests[2]))
+        if ChainLink.CONTACT in one.links
+        else one
+        for one in location.hypotheses
+    )
+    restored = [one for one in hypotheses if one.restored]
+    fewest = min((len(one.links) for one in restored), default=0)
+    places = _best([one for one in restored if len(one.links) == fewest])
+    return Location(hypotheses, places)
+
+
+def _better(free: LinkTest, effects: LinkTest) -> LinkTest:
+    charged = free.cost + free.charge
+    return free if free.passed and charged <= effects.cost + effects.charge else effects
 
 
 def _best(restored: list[Hypothesis]) -> tuple[Hypothesis, ...]:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.signal import argrelmin
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
@@ -181,22 +182,27 @@ def _fitted(
     without: frozenset[str],
     entries: tuple[LumpedEffect, ...],
 ) -> FittedState:
-    """Fit the base to the hits of one state, from a stiffness that was scanned for."""
+    """Fit the base to the hits of one state, from stiffnesses that were scanned for."""
     if len(campaign.hit) < CHAIN.least_hits:
         raise BadData(
             f"{len(campaign.hit)} hit at {campaign.preload[0]:.4g} N; at least "
             f"{CHAIN.least_hits} of each preload give a stiffness: add hits"
         )
     free = replace(campaign, preload_reference=float(campaign.preload[0]))
-    bench = make_bench(_freed(free, link, 1.0), without=without, entries=entries)
+    first = make_bench(_freed(free, link, 1.0), without=without, entries=entries)
     at = len(campaign.model.bodies) + link
-    factor = float(np.exp(_scanned(bench, link, np.zeros(bench.base_sd.size))[at]))
-    if factor != 1.0:
-        bench = make_bench(_freed(free, link, factor), without=without, entries=entries)
-    settled, fit = fit_base(bench)
-    if not isinstance(settled, LumpedBench):
-        raise TypeError("a fit must return a bench of the type it was given")
-    return FittedState(settled, fit)
+    found: list[FittedState] = []
+    for start in _scanned(first, link, np.zeros(first.base_sd.size)):
+        factor = float(np.exp(start[at]))
+        own = _freed(free, link, factor)
+        bench = make_bench(own, without=without, entries=entries)
+        settled, fit = fit_base(bench)
+        if not isinstance(settled, LumpedBench):
+            raise TypeError("a fit must return a bench of the type it was given")
+        found.append(FittedState(settled, fit))
+        if fit.chi2 <= CHAIN.least_explained * settled.blocks.dof:
+            break
+    return min(found, key=lambda state: state.before.chi2 / state.bench.blocks.dof)
 
 
 def _freed(campaign: Campaign, link: int, factor: float) -> Campaign:
@@ -215,20 +221,32 @@ def _freed(campaign: Campaign, link: int, factor: float) -> Campaign:
 
 def _scanned(
     bench: LumpedBench, link: int, base: FloatArray, terms: Sequence[Term] = ()
-) -> FloatArray:
-    """Return a base whose joint's stiffness explains most in a window, (n_base,)."""
-    window = Resolution(CHAIN.scan_window)
+) -> list[FloatArray]:
+    """Return bases whose joint's stiffness explains the first milliseconds, best first.
+
+    A joint that is far too stiff or soft fits a short window almost as well as the
+    right one: every minimum along the stiffness is a start, of two windows.
+    """
     at = len(bench.campaign.model.bodies) + link
-    tried, costs = [], []
-    for step in np.linspace(-CHAIN.scan_reach, CHAIN.scan_reach, CHAIN.scan_points):
-        one = base.copy()
-        one[at] = step
-        # Damping grows with the root of the stiffness at one damping ratio.
-        one[at + len(bench.campaign.model.links)] += 0.5 * (step - base[at])
-        residual = bench.residual(one, terms, window)
-        tried.append(one)
-        costs.append(float(residual @ residual))
-    return tried[int(np.argmin(costs))]
+    damping = at + len(bench.campaign.model.links)
+    steps = np.linspace(-CHAIN.scan_reach, CHAIN.scan_reach, CHAIN.scan_points)
+    tried = np.tile(base, (steps.size, 1))
+    tried[:, at] = steps
+    # Damping grows with the root of the stiffness at one damping ratio.
+    tried[:, damping] += 0.5 * (steps - base[at])
+    ranked: dict[int, float] = {}
+    for length in CHAIN.scan_windows:
+        window = Resolution(length)
+        costs = np.array([_squares(bench.residual(x, terms, window)) for x in tried])
+        for step in argrelmin(np.pad(costs, 1, constant_values=np.inf))[0] - 1:
+            share = float(costs[step] / costs.min())
+            ranked[int(step)] = min(share, ranked.get(int(step), np.inf))
+    order = sorted(ranked, key=lambda step: ranked[step])
+    return [tried[step] for step in order[: CHAIN.scan_starts]]
+
+
+def _squares(residual: FloatArray) -> float:
+    return float(residual @ residual)
 
 
 def _with_effects(
@@ -245,13 +263,21 @@ def _with_effects(
         Term(t.candidate, _coordinates(own, t.candidate, values_of(bench, t)))
         for t in fit.terms
     )
-    near = _scanned(own, link, base, terms)
-    start = np.concatenate([near, *(t.coordinates for t in terms)])
-    early = fit_coarse_to_fine(
-        make_problem(own, fit.candidates), start, BASE_RESOLUTIONS
-    )
-    if not np.isfinite(early.residual).all():
+    known = base.copy()
+    known[[at, at + len(own.campaign.model.links)]] = state.before.base[
+        [at, at + len(own.campaign.model.links)]
+    ]
+    problem = make_problem(own, fit.candidates)
+    tried = []
+    for near in (known, *_scanned(own, link, base, terms)):
+        start = np.concatenate([near, *(t.coordinates for t in terms)])
+        tried.append(fit_coarse_to_fine(problem, start, BASE_RESOLUTIONS))
+        if tried[-1].chi2 <= CHAIN.least_explained * own.blocks.dof:
+            break
+    finite = [one for one in tried if np.isfinite(one.residual).all()]
+    if not finite:
         return state
+    early = min(finite, key=lambda one: one.cost)
     # Scatter and noise at a fit that lacks the effect hide what the effect explains.
     refined = own.refine(early.base, early.terms)
     after = minimise(make_problem(refined, fit.candidates), early.x)

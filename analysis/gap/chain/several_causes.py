@@ -87,18 +87,24 @@ def add_causes(outcome: SearchOutcome, progress: Progress) -> SeveralCauses | No
         progress: receives one line for each set.
 
     Returns:
-        The fewest effects that are accepted together; None if no set is.
+        The fewest effects that are accepted together; None if no set is, or if fewer
+        of them explain the joint nearly as well.
     """
     bench = outcome.bench
     if not isinstance(bench, ContactBench):
         raise TypeError("the search must be one of the contact bench")
     base = outcome.base
     fits = list(outcome.ranked)
+    if fits and explains_plainly(bench, fits[0]):
+        return None
     for _ in range(1, CHAIN.most_causes):
+        before = min((score(bench, f) for f in fits), default=np.inf)
         fits = _one_more(bench, fits[: CHAIN.pair_fits], progress)
         judged = [(f, _accepted(bench, f, base)) for f in fits[: CHAIN.pair_fits]]
         passed = [(f, o) for f, o in judged if o.passed and explains_plainly(bench, f)]
         if passed:
+            if before - score(bench, passed[0][0]) < CHAIN.further_gain:
+                return None
             limit = score(bench, passed[0][0]) + bench.policy.rival_score
             near = [f for f, _ in passed[1:] if score(bench, f) < limit]
             return _explained(bench, *passed[0], near)

@@ -12,10 +12,14 @@ from jointbench.analysis.gap.chain.chain_records import (
     SurfaceReading,
 )
 from jointbench.analysis.gap.chain.joint_over_preload import BoltedStates
-from jointbench.analysis.gap.chain.locate_link import Chain, locate
+from jointbench.analysis.gap.chain.locate_link import Chain, locate, with_explained
 from jointbench.analysis.gap.contact_bench.joint_states import JointFacts
 from jointbench.analysis.gap.contact_bench.preload_law import LawParameter
-from jointbench.analysis.gap.contact_bench.preload_laws import PowerPreloadLaw
+from jointbench.analysis.gap.contact_bench.preload_laws import (
+    AsperityPreloadLaw,
+    PowerPreloadLaw,
+    asperity_parameters,
+)
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 
 PRELOAD = np.array([2e3, 4e3, 8e3, 16e3, 32e3, 64e3])
@@ -97,3 +101,71 @@ def test_two_faults_are_found_at_two_links() -> None:
     assert [p.links for p in location.places] == [
         (ChainLink.CONTACT, ChainLink.STRUCTURE)
     ]
+
+
+def measured(
+    preload: list[float], log_k: list[float], facts: JointFacts, moments: list[float]
+) -> Chain:
+    """Return a chain whose law is that of rms, slope, curvature and modulus."""
+    sds = (0.05, 0.08, 0.1, 0.03)
+    pairs = list(zip(moments, sds, strict=True))
+    own = AsperityPreloadLaw(asperity_parameters(*pairs), facts.area, facts.poisson)
+    count = len(preload)
+    reading = JointReading(np.array(log_k), 9e-6 * np.eye(count), GOOD)
+    states = BoltedStates(
+        "made", facts, np.array(preload), np.zeros(count, dtype=np.int64)
+    )
+    return Chain(SurfaceReading(own, GOOD), StructureReading(reading, None), states)
+
+
+def test_a_cut_off_and_a_compliance_are_compared_as_effects() -> None:
+    """Five torques of a compliant joint; a free shape of ln k would cost four times."""
+    made = measured(
+        [18094.3, 30474.8, 49498.4, 78355.8, 132251.6],
+        [24.46652, 24.88012, 25.24473, 25.52683, 25.84701],
+        JointFacts(
+            *(3, 0.01, 0.2, 0.15, 0.02236, 0.2, 0.0085088, 2.507561e10, 0.28),
+            *(0.0266283, 0.0141846, 0.0077633),
+        ),
+        [1.155e-6, 0.0475776, 4121.18, 2.507561e10],
+    )
+    assert [p.links for p in locate(made).places] == [(ChainLink.SURFACE,)]
+    found = diagnose_chain(made)
+    assert found.finding is Finding.AMBIGUOUS
+    assert "scale_cut@surface" in found.names
+    assert "series_compliance@link:joint" in found.names
+
+
+def test_causes_are_not_added_to_one_that_explains_the_joint_alone() -> None:
+    """It is five sd from zero; three together would be no better founded."""
+    made = measured(
+        [5940.67, 8412.70, 9589.10, 13526.4, 18085.2, 22979.1, 35518.2, 38236.4],
+        [
+            24.45233,
+            24.72383,
+            24.84256,
+            25.09302,
+            25.27852,
+            25.48351,
+            25.76728,
+            25.84935,
+        ],
+        JointFacts(
+            *(2, 0.016, 0.2, 0.15, 0.0372182, 0.2, 0.0061967, 4.629376e10, 0.28),
+            *(0.0227243, 0.0127544, 0.0086517),
+        ),
+        [4.05127e-7, 0.0158005, 1769.563, 4.629376e10],
+    )
+    found = diagnose_chain(made)
+    assert found.links == (ChainLink.CONTACT,)
+    assert found.finding is Finding.UNKNOWN
+    assert found.several is None
+
+
+def test_effects_that_explain_the_joint_restore_it_where_no_free_shape_does() -> None:
+    """A step of ln k is no offset, slope or bend; an accepted effect may have one."""
+    stepped = RIGHT * np.array([1.0, 1.0, 1.0, 0.1, 0.1, 1.0])
+    location = locate(chain(stepped))
+    assert location.places == ()
+    found = with_explained(location, LinkTest(8.0, 6, passed=True, charge=10.0))
+    assert [p.links for p in found.places] == [(ChainLink.CONTACT,)]
