@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Colours of reports by what they mean; `palette.css` beside this file has the values.
+"""Colours of reports and screens by meaning; `palette.css` beside this file has values.
 
 A figure names a role, never a value, so that one colour has one meaning in every
 report, light, dark or printed. Figures of other packages may name values.

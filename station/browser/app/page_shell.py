@@ -8,9 +8,10 @@ written by ``textContent`` alone.
 from collections.abc import Sequence
 from html import escape
 
+from jointbench.station.browser.app.screen_assets import COLOUR_STYLES
 from jointbench.station.browser.app.screen_part import ScreenPage
 
-_STYLES = ("palette.css", "screen.css", "vendor/uPlot.min.css")
+_STYLES = (*COLOUR_STYLES, "screen.css", "vendor/uPlot.min.css")
 
 
 def page_shell(page: ScreenPage, pages: Sequence[ScreenPage]) -> str:

@@ -13,6 +13,10 @@ _TYPES = {
 }
 
 
+COLOUR_STYLES = ("palette.css", "screen_roles.css")
+"""Colours of reports and screens, and the roles that only screens have."""
+
+
 @dataclass(frozen=True, slots=True)
 class Asset:
     """One file.
@@ -29,10 +33,14 @@ class Asset:
 
 
 def screen_assets() -> tuple[Asset, ...]:
-    """Return the files that a browser may ask for, palette included."""
-    palette = files("jointbench.station.screen").joinpath("palette.css")
+    """Return the files that a browser may ask for, colours included."""
+    drawing = files("jointbench.station.drawing")
+    colours = (
+        Asset(name, _TYPES["css"], drawing.joinpath(name).read_bytes())
+        for name in COLOUR_STYLES
+    )
     room = files("jointbench.station.browser").joinpath("assets")
-    return (Asset(palette.name, _TYPES["css"], palette.read_bytes()), *_below(room, ""))
+    return (*colours, *_below(room, ""))
 
 
 def _below(folder: Traversable, prefix: str) -> Iterator[Asset]:

@@ -5,7 +5,7 @@ import { el, say } from "./dom.js";
 import { colour, onTheme } from "./theme.js";
 
 /** @type {Record<string, string>} */
-const COLOURS = { done: "good", incomplete: "bad", now: "accent", open: "soft" };
+const COLOURS = { done: "good", incomplete: "refused", now: "accent", open: "soft" };
 
 export class GeometryView {
   constructor() {

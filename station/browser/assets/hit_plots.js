@@ -137,7 +137,7 @@ function overlay(plot, list, pick) {
   });
   plot.show([x, ...data], list.map((one, i) => ({
     name: `hit ${one.hit + 1}`,
-    colour: i < last ? "curve-old" : one.good ? "curve-1" : "bad-ink",
+    colour: i < last ? "curve-old" : one.good ? "curve-1" : "refused",
     width: i < last ? 1 : 2,
   })));
 }

@@ -465,10 +465,10 @@ export class PoleChart {
     const left = Math.min(this.box.x, this.box.tox);
     const width = Math.abs(this.box.tox - this.box.x);
     context.globalAlpha = 0.18;
-    context.fillStyle = colour(this.box.zoom ? "accent" : "bad");
+    context.fillStyle = colour(this.box.zoom ? "accent" : "refused");
     context.fillRect(left, TOP - 28, width, this.height);
     context.globalAlpha = 1;
-    context.strokeStyle = colour(this.box.zoom ? "accent" : "bad-ink");
+    context.strokeStyle = colour(this.box.zoom ? "accent" : "refused");
     context.strokeRect(left, TOP - 28, width, this.height);
     context.fillStyle = colour("ink");
     context.textBaseline = "top";

@@ -123,7 +123,7 @@ class ScopeView {
     for (let channel = 0; channel < rows; channel += 1) {
       const level = this.scope.level(channel);
       const reach = this.scope.reach(channel);
-      this.columns(channel, reach, level.full ? "bad-ink" : `curve-${(channel % 6) + 1}`);
+      this.columns(channel, reach, level.full ? "refused" : `curve-${(channel % 6) + 1}`);
       if (words) this.words(channel, reach, level.full);
     }
     if (words) this.time(rows * ROW);
@@ -192,7 +192,7 @@ class ScopeView {
     pen.fillStyle = colour("ink");
     pen.textAlign = "left";
     pen.fillText(known?.name ?? "", 4, channel * ROW + 12);
-    pen.fillStyle = full ? colour("bad-ink") : colour("soft");
+    pen.fillStyle = full ? colour("refused") : colour("soft");
     pen.textAlign = "right";
     pen.fillText(
       this.scope.count ? `${shown(reach.low, 3)} to ${shown(reach.high, 3)} ${known?.si ?? ""}${full ? "  OVERLOAD" : ""}` : "",

@@ -9,6 +9,10 @@ from jointbench.station.drawing.map_picture import legible_on, map_colour
 from jointbench.station.drawing.palette import MEANINGS
 
 CSS = files("jointbench.station.drawing").joinpath("palette.css").read_text("utf-8")
+SCREEN = (
+    files("jointbench.station.drawing").joinpath("screen_roles.css").read_text("utf-8")
+)
+ASSETS = files("jointbench.station.browser").joinpath("assets")
 LEAST_CONTRAST = 4.5
 TEXTS = ("ink", "soft", "link")
 
@@ -19,6 +23,15 @@ def values(block: str) -> dict[str, str]:
 
 
 LIGHT, DARK = (values(block) for block in CSS.split("@media"))
+
+
+def on_screens(mode: dict[str, str]) -> dict[str, str]:
+    """Return the colours of screens, those of reports among them."""
+    found = dict(mode)
+    for name, value in re.findall(r"--([\w-]+): ([^;]+);", SCREEN):
+        role = re.fullmatch(r"var\(--([a-z]+)\)", value)
+        found[name] = found[role[1]] if role else value
+    return found
 
 
 def luminance(color: str) -> float:
@@ -52,6 +65,27 @@ def test_light_and_dark_have_the_same_names_and_every_role_a_class():
     for role in MEANINGS:
         name = role.removeprefix("var(--").removesuffix(")")
         assert f".c-{name} {{ --c: {role}; }}" in CSS
+
+
+@pytest.mark.parametrize("mode", [LIGHT, DARK], ids=["light", "dark"])
+def test_texts_on_bands_and_curves_of_screens_are_legible(mode):
+    """4.5:1 for texts on bands of colour, and for curves on paper."""
+    known = on_screens(mode)
+    pairs = [("on-band", band) for band in known if band.startswith("band-")]
+    pairs += [("on-accent", "accent"), ("on-notice", "notice")]
+    pairs += [(curve, "paper") for curve in known if curve.startswith("curve-")]
+    assert len(pairs) == 13
+    low = {p: contrast(known[p[0]], known[p[1]]) for p in pairs}
+    assert {p: value for p, value in low.items() if value < LEAST_CONTRAST} == {}
+
+
+def test_screens_use_no_colour_beside_the_palette():
+    """Every role that a style sheet names exists, and none has a value of its own."""
+    known = on_screens(LIGHT)
+    for name in ("screen.css", "bench.css", "desk.css"):
+        text = ASSETS.joinpath(name).read_text("utf-8")
+        assert set(re.findall(r"var\(--([\w-]+)\)", text)) <= known.keys(), name
+        assert re.findall(r"#[0-9a-fA-F]{3,8}\b(?=[^{}]*;)", text) == [], name
 
 
 def test_no_two_roles_have_one_colour():
