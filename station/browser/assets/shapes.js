@@ -6,6 +6,7 @@ import { el, fill, say, typesInField } from "./dom.js";
 import { shown } from "./numbers.js";
 import { phaseScatter } from "./phase_scatter.js";
 import { ShapeView } from "./shape_view.js";
+import { onTheme } from "./theme.js";
 
 deskScreen("Shapes", async (desk, place) => {
   let page = await desk.get("shapes");
@@ -36,6 +37,11 @@ deskScreen("Shapes", async (desk, place) => {
   const where = page.measured
     ? "On the geometry given; drag or arrow keys turn it."
     : "The points stand in a row in measured order; --geometry gives their positions.";
+  const scattered = () => {
+    const mode = page.modes[now];
+    if (mode) phaseScatter(scatter, mode, page.labels);
+  };
+  onTheme(scattered);
   const choose = (/** @type {number} */ number) => {
     now = number;
     const mode = page.modes[now];
@@ -48,7 +54,7 @@ deskScreen("Shapes", async (desk, place) => {
     view.show(mode);
     say(facts, `Mode ${now + 1}: ${shown(mode.frequency_hz, 7)} Hz, damping ${shown(100 * mode.damping_ratio)} %, `
       + `MPC ${shown(mode.mpc)}, mean phase deviation ${shown(mode.mpd_deg, 3)}°. ${where}`);
-    phaseScatter(scatter, mode, page.labels);
+    scattered();
     scatter.setAttribute("aria-label", `Components of mode ${now + 1} in the complex plane, MPC ${shown(mode.mpc, 3)}`);
   };
   document.addEventListener("keydown", (event) => {

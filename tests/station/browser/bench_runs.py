@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,6 +42,35 @@ def plan_file(folder: Path) -> Path:
     path = folder / "plan.toml"
     path.write_text(text, encoding="utf-8")
     return path
+
+
+# WCAG 2.2: 4.5:1 for every text on the first ground behind it that is not transparent.
+ILLEGIBLE = """() => {
+  const numbers = text => text.match(/[0-9.]+/g).map(Number);
+  const part = v => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+  const light = ([r, g, b]) => 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
+  const ground = e => {
+    for (; e; e = e.parentElement) {
+      const c = numbers(getComputedStyle(e).backgroundColor);
+      if (c.length < 4 || c[3] > 0.99) return c;
+    }
+    return [255, 255, 255];
+  };
+  const found = [];
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const words = texts.currentNode.textContent.trim();
+    const e = texts.currentNode.parentElement;
+    if (!words || !e.checkVisibility() || e.closest('[disabled]')) continue;
+    const style = getComputedStyle(e);
+    const ink = light(numbers(e.ownerSVGElement ? style.fill : style.color));
+    const paper = light(numbers(ground(e).slice(0, 3).join()));
+    const ratio = (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05);
+    if (ratio < 4.5) found.push(`${ratio.toFixed(1)} ${words}`);
+  }
+  const beyond = document.documentElement.scrollWidth - innerWidth;
+  return beyond > 0 ? [...found, `${beyond} px beyond the window`] : found;
+}"""
 
 
 @dataclass
@@ -118,6 +147,22 @@ def opened(chromium: "Browser", link: str) -> Iterator["Page"]:
         page.goto(link)
         yield page
         assert not foreign
+
+
+def legible(page: "Page") -> None:
+    """Every text has contrast, light and dark; on a phone nothing scrolls sideways."""
+    usual = page.viewport_size
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        for width in (1400, 400):
+            page.set_viewport_size({"width": width, "height": 900})
+            # Plots follow the window a moment later.
+            with suppress(Exception):
+                page.wait_for_function(f"() => !({ILLEGIBLE})().length", timeout=9000)
+            assert page.evaluate(ILLEGIBLE) == [], (page.url, scheme, width)
+    page.emulate_media(color_scheme="light")
+    if usual is not None:
+        page.set_viewport_size(usual)
 
 
 def paused_after(running: Bench, *, hits: int) -> None:

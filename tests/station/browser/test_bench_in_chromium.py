@@ -18,6 +18,7 @@ from bench_runs import (
     Bench,
     answered,
     bench,
+    legible,
     opened,
     paused_after,
     typed,
@@ -92,7 +93,7 @@ def test_from_the_first_hit_to_the_report_by_keys(
     was killed, the screen shows the same session, which continued meanwhile.
     """
     with bench(tmp_path, "--json", str(tmp_path / "s.json")) as running:
-        paused_after(running, hits=2)
+        paused_after(running, hits=8)  # the overload and the double one are past
         with opened(chromium, running.link()) as page:
             measured_by_keys(page, running)
             page.keyboard.press("Tab")  # from the note's field to the page
@@ -129,6 +130,7 @@ def measured_by_keys(page: "Page", running: Bench) -> None:
     page.reload()
     page.locator("#verdict", has_text=before.split("  ")[0]).wait_for()
     assert page.evaluate(UNNAMED) == []
+    legible(page)
     page.keyboard.press("Space")
     answered(page, "the session continues")
     typed(page, "h", "2")
@@ -151,6 +153,7 @@ def looked_at_setup(page: "Page") -> None:
     page.get_by_role("slider", name="trigger level").wait_for()
     page.locator("meter").nth(3).wait_for()
     assert page.evaluate(UNNAMED) == []
+    legible(page)
     page.get_by_role("link", name="Poles").press("Enter")
     page.locator(".waiting", has_text="is being measured").wait_for()
     page.get_by_role("link", name="Measure").press("Enter")
@@ -165,6 +168,7 @@ def poles_by_keys(page: "Page") -> None:
     page.locator(".desk-grid tbody tr", has_text="pinned").first.wait_for()
     page.locator(".desk-message", has_text="written").wait_for()
     assert page.evaluate(UNNAMED) == []
+    legible(page)
 
 
 def shapes_and_gap(page: "Page", folder: Path, running: Bench) -> None:
@@ -172,6 +176,7 @@ def shapes_and_gap(page: "Page", folder: Path, running: Bench) -> None:
     page.get_by_role("link", name="Shapes").press("Enter")
     page.locator("canvas.shape-view").wait_for()
     assert page.evaluate(UNNAMED) == []
+    legible(page)
     page.get_by_role("link", name="Joint and gap").press("Enter")
     page.locator("pre", has_text="jointbench gap").wait_for()
     (folder / "bench.toml").write_text(MODEL, encoding="utf-8")
@@ -185,6 +190,7 @@ def shapes_and_gap(page: "Page", folder: Path, running: Bench) -> None:
     page.locator(".verdict-line", has_text="no known effect explains").wait_for()
     reason = str(json.loads(found.read_text())["reason"])
     assert reason in page.locator("section[aria-label=Gap]").inner_text()
+    legible(page)
 
 
 def reported(page: "Page", folder: Path) -> None:
@@ -192,9 +198,11 @@ def reported(page: "Page", folder: Path) -> None:
     page.get_by_role("link", name="Report").press("Enter")
     page.get_by_role("button", name="Write the report").press("Enter")
     page.locator("code", has_text="s.html").first.wait_for()
+    legible(page)
     with page.context.expect_page() as other:
         page.get_by_role("link", name="Open it").press("Enter")
     other.value.locator("h1").first.wait_for()
+    legible(other.value)
     results = next(folder.glob("s.*N.results.h5"))
     assert results.name in other.value.locator("body").inner_text()
     choices = choices_of(read_run(results).modes[0].steps)
