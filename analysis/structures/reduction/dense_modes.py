@@ -23,6 +23,13 @@ _CONVERGED, _CONVERGED_HIGH = 1e-6, 1e-5
 _ROUGH = 3e-3
 # Vectors in one block beyond the number of modes.
 _SPARE = 4
+# Vectors of a block per wanted mode, and the least: narrow blocks need fewer vectors in
+# all, wide ones fewer steps. Modes of one frequency must not be more than one block.
+_BLOCK, _LEAST_BLOCK = 0.6, 6
+# Vectors in the space per wanted mode before the first check: fewer never suffice.
+_FIRST_SPACE = 3.5
+# Part of the start that is random: what a guess by its symmetry cannot hold.
+_RANDOM_PART = 1e-3
 # From this share of all modes on, all of them are computed.
 _MOST_OF_ALL = 0.25
 _SMALL = 160
@@ -55,10 +62,12 @@ def lowest_dense_modes(
         value, vector = _all_of_inverse(factor, size)
         value, vector = value[:count], vector[:, :count]
     else:
-        if start is None:
-            start = _random_start(size, count)
+        block = max(_LEAST_BLOCK, round(_BLOCK * count))
         value, vector = _block_lanczos(
-            factor, start, lambda value: _allowed(value[:count], shift)
+            factor,
+            _narrow_start(size, block, start),
+            lambda value: _allowed(value[:count], shift),
+            round(_FIRST_SPACE * count),
         )
     return _without_shift(value, shift), vector
 
@@ -89,7 +98,10 @@ def dense_modes_below(
         if start is None:
             start = _random_start(size, _SPARE)
         value, vector = _block_lanczos(
-            factor, start, lambda value: _ROUGH * value[value > least]
+            factor,
+            start,
+            lambda value: _ROUGH * value[value > least],
+            _FIRST_CHECK * start.shape[1],
         )
     return _without_shift(value, shift), vector
 
@@ -104,6 +116,16 @@ def _without_shift(value: FloatArray, shift: float) -> FloatArray:
 def _random_start(size: int, count: int) -> FloatArray:
     block = min(count + _SPARE, size)
     return np.random.default_rng(0).standard_normal((size, block))
+
+
+def _narrow_start(size: int, block: int, near: FloatArray | None) -> FloatArray:
+    """Return a block of mixtures of vectors, with a little of every direction."""
+    random = np.random.default_rng(0)
+    start = random.standard_normal((size, block))
+    if near is not None:
+        mixed = near @ random.standard_normal((near.shape[1], block))
+        start = mixed + _RANDOM_PART * start
+    return np.asarray(start)
 
 
 def _all_of_inverse(
@@ -148,6 +170,7 @@ def _block_lanczos(
     factor: tuple[FloatArray, bool],
     start: FloatArray,
     allowed: Callable[[FloatArray], FloatArray],
+    first: int,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the largest eigenvalues of the inverse, and vectors.
 
@@ -156,28 +179,34 @@ def _block_lanczos(
         start: see `lowest_dense_modes`.
         allowed: from eigenvalues, the largest first, to the residuals that are allowed
             of those that are wanted.
+        first: number of vectors before the first check.
     """
     size = factor[0].shape[0]
-    new = np.linalg.qr(start)[0]
-    space, images = np.zeros((size, 0)), np.zeros((size, 0))
-    for step in range(size):
+    new = _orthonormal(start)
+    # Columns are contiguous, as LAPACK wants them.
+    space = np.zeros((size, size), order="F")
+    small = np.zeros((size, size), order="F")
+    low = 0
+    while True:
+        high = low + new.shape[1]
+        space[:, low:high] = new
         image = cho_solve(factor, new, check_finite=False)
-        space = np.concatenate([space, new], axis=1)
-        images = np.concatenate([images, image], axis=1)
-        if step + 1 < _FIRST_CHECK and space.shape[1] < size:
-            new = _next_block(space, image)
-            continue
-        small = space.T @ images
-        value, vector = np.linalg.eigh(0.5 * (small + small.T))
-        value, vector = value[::-1], vector[:, ::-1]
-        limit = allowed(value)
-        value, vector = value[: limit.size], vector[:, : limit.size]
-        better = images @ vector
-        left = np.linalg.norm(better - (space @ vector) * value, axis=0)
-        if np.all(left <= limit) or space.shape[1] == size:
-            break
-        new = _next_block(space, image)
+        new, inside = _next_block(space[:, :high], image)
+        small[:high, low:high] = inside
+        if high == size or high >= first:
+            # The lower triangle is not needed.
+            value, vector = np.linalg.eigh(small[:high, :high], UPLO="U")
+            value, vector = value[::-1], vector[:, ::-1]
+            limit = allowed(value)
+            value, vector = value[: limit.size], vector[:, : limit.size]
+            # What an inversion adds to the space comes from its last block alone.
+            outside = (new.T @ image) @ vector[low:high]
+            if high == size or np.all(np.linalg.norm(outside, axis=0) <= limit):
+                break
+        low = high
     # One more inversion damps what high modes leave; it stays orthonormal to rounding.
+    better = (space[:, :high] @ vector) * value
+    better += new @ outside
     return value, np.asarray(np.linalg.qr(better)[0])
 
 
@@ -188,14 +217,13 @@ def _allowed(value: FloatArray, shift: float) -> FloatArray:
     return np.asarray(value * np.clip(relative, _CONVERGED, _CONVERGED_HIGH))
 
 
-def _next_block(space: FloatArray, image: FloatArray) -> FloatArray:
-    """Return an orthonormal block outside of the space."""
-    new = image
+def _next_block(space: FloatArray, image: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return an orthonormal block outside of the space, and the part inside."""
     room = space.shape[0] - space.shape[1]
-    for _ in range(2):
-        new = new - space @ (space.T @ new)
-        new = _orthonormal(new)[:, :room]
-    return np.asarray(new)
+    inside = space.T @ image
+    new = _orthonormal(image - space @ inside)[:, :room]
+    new = _orthonormal(new - space @ (space.T @ new))
+    return np.asarray(new), np.asarray(inside)
 
 
 def _orthonormal(block: FloatArray) -> FloatArray:

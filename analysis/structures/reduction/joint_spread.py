@@ -33,9 +33,10 @@ class JointSpread:
         """Number of parameters."""
         return sum(block.shape[0] for block in self.blocks)
 
-    def total(self, values: FloatArray) -> FloatArray:
-        """Return the sum of values times G, shape (r, r)."""
-        whole = np.zeros((self.size, self.size))
+    def total(self, values: FloatArray, base: FloatArray | None = None) -> FloatArray:
+        """Return the sum of values times G, added to a base, shape (r, r)."""
+        shape = (self.size, self.size)
+        whole = np.zeros(shape) if base is None else np.array(base, float, order="C")
         flat = whole.reshape(-1)
         for own, columns, block in self._groups(values):
             if not np.any(own):

@@ -77,7 +77,7 @@ class ReducedModel:
                 f"joint stiffnesses are {values.tolist()} N/m; give "
                 f"{len(self.names)} values, none below zero"
             )
-        return np.asarray(self.stiffness + self.spread.total(values))
+        return self.spread.total(values, self.stiffness)
 
     def restricted(self, turn: FloatArray) -> "ReducedModel":
         """Return the model in fewer coordinates.
@@ -215,6 +215,9 @@ def _solved(
     values = np.asarray(stiffness, float)
     matrix = model.with_joints(values)
     turn, rigid = _unstrained(model, values > 0)
+    if not rigid:
+        level, shapes = solve(matrix, model.guess)
+        return ReducedModes(level, frequency_of(level), shapes, 0)
     moved = turn.shape[0]
     matrix[:moved] = turn.T @ matrix[:moved]
     matrix[:, :moved] = matrix[:, :moved] @ turn
