@@ -219,8 +219,8 @@ Both are without friction.
         "left follows the element over the radius",
         "of the patch: 31 mm below the heads of plates of 20 mm, 33 mm on a crown of "
         "10 um, 27 mm on one of 20 um. Of the difference",
-        "to half-spaces 1.1 % of the area on 10 um, 0.7 % on 20 um is that of blocks of "
-        "100 mm from half-spaces. `jointbench pressure`",
+        "to half-spaces 1.1 % of the area on 10 um, 0.7 % on 20 um is that of blocks "
+        "of 100 mm from half-spaces. `jointbench pressure`",
         "names a mesh that is coarser than a third of a head.",
         "",
     ]
