@@ -8,12 +8,15 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.matrices.contact_interface import JointFace
+from jointbench.analysis.structures.matrices.parts import GROUND
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.pressure.clamped_loads import (
     ClampBolt,
     bolt_load,
     weight_load,
 )
+from jointbench.analysis.structures.pressure.closed_patch import open_share
 from jointbench.analysis.structures.pressure.interface_compliance import (
     InterfaceCompliance,
     interface_compliance,
@@ -26,7 +29,6 @@ from jointbench.analysis.structures.pressure.pressed_surface import (
 from jointbench.analysis.structures.pressure.pressure_totals import (
     SurfacePoints,
     joint_totals,
-    open_share,
 )
 
 _GRID = np.geomspace(1e-3, 1e3, 61)
@@ -48,8 +50,8 @@ class PressureCase:
         gravity: direction in which things fall, shape (3,), or None for no weight.
         common_sd: of ln of all preloads together: wrench, nut factor [-].
         area_sd: of ln of the law's reference area [-].
-        crown: gap at the point farthest from the centroid before anything presses, as
-            of two crowned surfaces [m].
+        crown: gap at the corner farthest from the centroid before anything presses,
+            as of two crowned surfaces [m].
     """
 
     between: tuple[str, str]
@@ -76,6 +78,8 @@ class JointPressure:
         opened: share of the surface that is open [-].
         parts: standard deviation of ln of the totals by cause, each shape (6,).
         frame: rows normal, first and second tangent, shape (3, 3).
+        element_share: largest element beside a bolt over the diameter of its head [-];
+            0 without bolts.
     """
 
     points: SurfacePoints
@@ -88,6 +92,7 @@ class JointPressure:
     opened: float
     parts: dict[str, FloatArray]
     frame: FloatArray
+    element_share: float
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -140,9 +145,19 @@ def joint_pressure(
     wide = _WIDE * np.sqrt(np.sum([one**2 for one in parts.values()], axis=0))
     interval = np.stack([totals * np.exp(-wide), totals * np.exp(wide)], axis=1)
     even = joint_totals(points, law, np.full(points.area.size, force / points.total))
-    opened = open_share(points, surface.pressure)
+    opened = open_share(points, law, surface)
     return JointPressure(
-        points, law, surface, force, totals, interval, even, opened, parts, face.frame
+        points,
+        law,
+        surface,
+        force,
+        totals,
+        interval,
+        even,
+        opened,
+        parts,
+        face.frame,
+        _element_share(face, case),
     )
 
 
@@ -178,10 +193,27 @@ def _points(
     return SurfacePoints(place, area)
 
 
+def _element_share(face: JointFace, case: PressureCase) -> float:
+    """Return the largest element within a head's diameter of a bolt, over the head."""
+    size = np.zeros(face.points.weight.size)
+    sides = (face.points.first, face.points.second)
+    for name, cells in zip(case.between, sides, strict=True):
+        if name != GROUND:
+            area = np.bincount(cells, weights=face.points.weight)
+            size = np.maximum(size, np.sqrt(area)[cells])
+    place = face.points.position @ face.frame[1:].T
+    shares = [0.0]
+    for bolt in case.bolts:
+        away = np.linalg.norm(place - np.asarray(bolt.position), axis=1)
+        shares.append(float(size[away <= bolt.head].max(initial=0.0)) / bolt.head)
+    return max(shares)
+
+
 def _form(points: SurfacePoints, crown: float) -> FloatArray:
     """Return the gap of crowned surfaces [m], shape (n_points,)."""
     reach = ((points.place - points.centre) ** 2).sum(axis=1)
-    return np.asarray(crown * reach / reach.max())
+    farthest = ((points.corners - points.centre) ** 2).sum(axis=2).max()
+    return np.asarray(crown * reach / farthest)
 
 
 def _parts(

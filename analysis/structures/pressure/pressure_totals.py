@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.analysis.structures.meshes.elements import triangle_rule
 from jointbench.analysis.structures.pressure.interface_law import InterfaceLaw
 
 QUANTITIES = (
@@ -25,7 +26,7 @@ decay towards 0 have no edge."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfacePoints:
-    """The points of a joint.
+    """The points of a joint, by triangles in the order of `triangle_rule`.
 
     Attributes:
         place: along both tangents, global coordinates [m], shape (n, 2).
@@ -48,6 +49,15 @@ class SurfacePoints:
     def centre(self) -> FloatArray:
         """Centroid [m], shape (2,)."""
         return np.asarray(self.area @ self.place / self.total)
+
+    @property
+    def corners(self) -> FloatArray:
+        """Corners of the triangles [m], shape (n_triangles, 3, 2)."""
+        rule = triangle_rule()[0]
+        plane = np.column_stack([np.ones(rule.shape[0]), rule])
+        unit = np.array([[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0]])
+        groups = self.place.reshape(-1, rule.shape[0], 2)
+        return np.asarray(unit @ np.linalg.pinv(plane) @ groups)
 
 
 def joint_totals(
@@ -75,10 +85,3 @@ def joint_totals(
             damping.sum(),
         ]
     )
-
-
-def open_share(points: SurfacePoints, pressure: FloatArray) -> float:
-    """Return the share of the surface that is open [-]."""
-    mean = float(points.area @ pressure) / points.total
-    apart = pressure < OPEN * mean
-    return float(points.area[apart].sum() / points.total)
