@@ -12,7 +12,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "surface-benchmark.md"
 PRECISION = "python -m benchmarks.surface.precision"
 HEADINGS = {
     "clean": "Precision of D on clean exact profiles of 20,000 points: "
-    f"`{PRECISION} --seeds N`",
+    f"`{PRECISION} --seeds N --first N --dimension D`",
     "noise": f"With noise of one step: `{PRECISION} --setting noise`",
     "little": f'With noise of 0.3 steps: `{PRECISION} --setting "little noise"`',
     "psf": f'With a point spread of 4 samples: `{PRECISION} --setting "point spread"`',

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.ndimage
+from scipy.special import zeta
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Profile
@@ -74,41 +75,44 @@ def cramer_rao(dimension: float, points: int) -> float:
     """
 
     def log_spectrum(hurst: float) -> FloatArray:
-        omega = (np.arange(8000) + 0.5) / 8000 * np.pi
-        waves = omega[:, None] + 2 * np.pi * np.arange(-300, 301)
-        aliased = np.sum(np.abs(waves) ** (-1 - 2 * hurst), axis=1)
-        return np.asarray(np.log(4 * np.sin(omega / 2) ** 2 * aliased))
+        turns = (np.arange(8000) + 0.5) / 16_000
+        # All aliases at once: Hurwitz's zeta function.
+        aliased = zeta(1 + 2 * hurst, turns) + zeta(1 + 2 * hurst, 1 - turns)
+        aliased *= (2 * np.pi) ** (-1 - 2 * hurst)
+        return np.asarray(np.log(4 * np.sin(np.pi * turns) ** 2 * aliased))
 
     hurst = 2 - dimension
     slope = (log_spectrum(hurst + 1e-4) - log_spectrum(hurst - 1e-4)) / 2e-4
     return float(np.sqrt(2 / (points * np.var(slope))))
 
 
-def measured(dimension: float, setting: Setting, seed: int) -> Profile:
+def measured(
+    dimension: float, setting: Setting, seed: int, points: int = POINTS
+) -> Profile:
     """Return an exact profile as the instrument shows it."""
     profile = rough_profile(
-        POINTS, spacing=SPACING, dimension=dimension, roughness=1e-10, seed=seed
+        points, spacing=SPACING, dimension=dimension, roughness=1e-10, seed=seed
     )
     heights = profile.heights * STEP / np.std(np.diff(profile.heights))
     heights = traced(heights, (SPACING,), setting.tip)
     if setting.blur > 0:
         heights = scipy.ndimage.gaussian_filter1d(heights, setting.blur)
-    noise = np.random.default_rng([seed, 77]).standard_normal(POINTS)
+    noise = np.random.default_rng([seed, 77]).standard_normal(points)
     return replace(profile, heights=heights + setting.noise * noise)
 
 
-def line(name: str, dimension: float, seeds: range) -> str:
+def line(name: str, dimension: float, seeds: range, points: int) -> str:
     """Return one line of the table."""
     setting, found, models, whole = SETTINGS[name], [], Counter[str](), 0
     for seed in seeds:
-        profile = measured(dimension, setting, seed)
+        profile = measured(dimension, setting, seed, points)
         fit = fit_fractal(structure_function(profile))
         models[fit.instrument] += 1
         whole += fit.verdict is SurfaceVerdict.FRACTAL
         if fit.scaling is not None:
             found.append((fit.scaling.dimension, fit.scaling.dimension_sd))
     value, stated = np.array(found).T
-    bound = cramer_rao(dimension, POINTS) if name == "clean" else float("nan")
+    bound = cramer_rao(dimension, points) if name == "clean" else float("nan")
     cells = (
         name,
         f"{dimension}",
@@ -132,10 +136,13 @@ def main() -> None:
     parser.add_argument("--setting", choices=list(SETTINGS), default="clean")
     parser.add_argument("--dimension", type=float, nargs="+", default=[1.3, 1.5, 1.7])
     parser.add_argument("--seeds", type=int, default=100)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--points", type=int, default=POINTS)
     asked = parser.parse_args()
     print("| " + " | ".join(HEAD) + " |\n" + "|---" * len(HEAD) + "|")
     for dimension in asked.dimension:
-        print(line(asked.setting, dimension, range(asked.seeds)), flush=True)
+        seeds = range(asked.first, asked.first + asked.seeds)
+        print(line(asked.setting, dimension, seeds, asked.points), flush=True)
 
 
 if __name__ == "__main__":

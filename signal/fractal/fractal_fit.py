@@ -14,6 +14,7 @@ from jointbench.signal.fractal.local_slope import local_slope
 from jointbench.signal.fractal.model_choice import Choice, choose, spans_decade
 from jointbench.signal.fractal.scaling_bands import FEWEST_LAGS, find_band
 from jointbench.signal.fractal.spectral_bend import Kink, find_kink
+from jointbench.signal.fractal.spectral_law import spectral_choice
 from jointbench.signal.fractal.verdict_records import (
     FractalFit,
     LocalSlope,
@@ -92,9 +93,9 @@ def fit_fractal(
     """Fit D and G together with the instrument, or give the reason for no D.
 
     Generalised least squares with the exact covariance of S for Gaussian heights;
-    the smallest of five instrument models that the data support. Tried in turn: all
-    lags within their scatter; all lags with a tolerance of 2 %; bands of a decade or
-    more.
+    the smallest of five instrument models that the data support. Tried in turn: the
+    spectrum of a smooth profile (D below 1.25); all lags within their scatter; all
+    lags with a tolerance of 2 %; bands of a decade or more.
 
     Args:
         estimate: of one surface, or of two combined.
@@ -135,6 +136,9 @@ def fit_fractal(
 
 def _search(problem: FractalProblem) -> tuple[Choice, Judgement | None]:
     """Return the best description of S, and its judgement if it was accepted."""
+    smooth = spectral_choice(problem)
+    if smooth is not None:
+        return smooth, judge(smooth)
     loose = replace(problem, tolerance=MODEL_TOLERANCE)
     for attempt in (problem, loose):
         found = choose(attempt)

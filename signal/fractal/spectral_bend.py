@@ -45,13 +45,16 @@ class Kink:
     slope_above: float
 
 
-def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
+def find_kink(
+    problem: FractalProblem, seen: SeenSurface, clear: float = _CLEAR_GAIN
+) -> Kink | None:
     """Return the most significant bend of a spectrum relative to a fit, if any.
 
     Args:
         problem: with a spectrum in its structure function; None is returned without
             one.
         seen: the fitted surface with one power law, and its instrument.
+        clear: least gain of chi2 by a bend [-].
 
     Source:
         Whittle, Ark. Mat. 2 (1953) 423: ordinates over their expectation are
@@ -67,11 +70,11 @@ def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
     if np.count_nonzero(keep) < _FEWEST_BINS:
         return None
     omega, count = spectrum.omega[keep], spectrum.count[keep]
-    share = spectrum.power[keep] / _expected_spectrum(omega, seen)
+    share = spectrum.power[keep] / expected_spectrum(omega, seen)
     size = np.sqrt(count)
     gap = size * (3 * (np.cbrt(share) - 1) + 1 / (3 * count))
     line = np.stack([size, size * np.log(omega)], axis=1)
-    best, found = _CLEAR_GAIN, None
+    best, found = clear, None
     straight = _left(line, gap)[0]
     for knot in _knots(problem, omega):
         hinge = size * np.maximum(0.0, np.log(omega / knot))
@@ -83,7 +86,7 @@ def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
     return found
 
 
-def _expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
+def expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
     """Return the spectrum of height differences of a measured surface.
 
     Args:

@@ -10,7 +10,10 @@ from scipy.signal import lfilter
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
+from jointbench.signal.fractal.fit_problem import pose
 from jointbench.signal.fractal.fractal_fit import fit_fractal, fractal_from_line
+from jointbench.signal.fractal.model_choice import Choice
+from jointbench.signal.fractal.spectral_law import spectral_choice
 from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.signal.surface.pooled_profiles import pool_profiles
 from jointbench.signal.surface.structure_constant import structure_constant
@@ -258,3 +261,30 @@ def test_a_line_without_slope_has_no_dimension_below_two():
     """Slope 0 is D = 2, which no profile has: a usage error."""
     with pytest.raises(UsageError, match="between 1 and 2"):
         fractal_from_line(0.0, -12.0)
+
+
+def by_spectrum(heights: FloatArray) -> Choice | None:
+    """Return the power law by the spectrum, if it is one."""
+    surface = Profile("p", heights, SPACING, all_valid(heights))
+    estimate = structure_function(surface, lags=range(1, 101))
+    return spectral_choice(pose(estimate))
+
+
+@pytest.mark.parametrize("dimension", [1.1, 1.9])
+def test_dimensions_next_to_the_limits_reach_their_bound(dimension: float):
+    heights = brownian(20_000, dimension, 31)
+    found, sd = known(fit(heights))
+    assert_allclose(found, dimension, atol=0.012)
+    # Whittle's information with the amplitude unknown: 0.0048 and 0.0025.
+    assert sd < 0.006
+
+
+def test_noise_on_a_smooth_profile_is_not_taken_for_roughness():
+    heights = brownian(8000, 1.15, 32)
+    assert by_spectrum(heights) is not None
+    assert by_spectrum(heights + noise(8000, 0.3 * STEP, 32)) is None
+
+
+def test_a_smooth_profile_that_rolls_off_is_no_power_law():
+    heights = brownian(8000, 1.15, 33)
+    assert by_spectrum(heights - gaussian_filter1d(heights, 100)) is None
