@@ -122,6 +122,15 @@ def judged(cell: Cell, profile: Profile) -> dict[str, object]:
     for name, part, truth in zip(QUANTITIES, parts, truths(cell, fit), strict=True):
         if part is not None:
             found[name] = [part.value, part.low, part.high, truth]
+    if fit.roll_off is None and fit.model is not None and fit.roll_off_beyond:
+        # Too short to decide: the likeliest one, and the limit that it is beyond.
+        likeliest = fit.model.roll_off * fit.pitch
+        found["roll-off"] = [
+            likeliest,
+            fit.roll_off_beyond,
+            np.inf,
+            truths(cell, fit)[1],
+        ]
     return found
 
 

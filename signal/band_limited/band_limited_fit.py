@@ -16,6 +16,7 @@ from jointbench.signal.band_limited.band_records import (
     DrawnModels,
     Interval95,
     RollOffVerdict,
+    RoughnessMoments,
 )
 from jointbench.signal.band_limited.fit_limits import (
     BEYOND_RATIO,
@@ -26,6 +27,7 @@ from jointbench.signal.band_limited.fit_limits import (
     WIDEST_TOLERANCE,
 )
 from jointbench.signal.band_limited.gamma_deviance import expected_deviance
+from jointbench.signal.band_limited.likelihood_ends import height_ends, roll_off_ends
 from jointbench.signal.band_limited.line_sample import LineSample, line_sample
 from jointbench.signal.band_limited.map_fit import fit_map
 from jointbench.signal.band_limited.roughness_moments import (
@@ -252,13 +254,13 @@ def _described(found: _Found) -> BandLimitedFit:
         verdict=verdict,
         reason=_reason(found, beyond),
         hurst=draws.estimate(draws.parameters[:, 1], float(best[1])),
-        roll_off=_roll_off(sample, draws, best) if saturated else None,
+        roll_off=_roll_off(found, draws) if saturated else None,
         roll_off_beyond=beyond * sample.pitch,
         height=_whole_height(likelihood, draws, best) if saturated else None,
         short_cut=cut if best[3] > 0 else replace(cut, low=0.0),
         tip_deviation=None if sample.transfer.tip is None else _tip(found),
         noise=sample.scale * float(np.sqrt(model.noise)),
-        moments=modelled_moments(likelihood, draws, best),
+        moments=_moments(found, draws),
         tolerance=likelihood.tolerance,
         model=model,
         pitch=sample.pitch,
@@ -270,9 +272,21 @@ def _described(found: _Found) -> BandLimitedFit:
     )
 
 
-def _roll_off(sample: LineSample, draws: WeightedDraws, best: FloatArray) -> Interval95:
-    values = sample.pitch * np.exp(draws.parameters[:, 2])
-    return draws.estimate(values, float(sample.pitch * np.exp(best[2])))
+def _roll_off(found: _Found, draws: WeightedDraws) -> Interval95:
+    pitch, best = found.likelihood.sample.pitch, found.best
+    values = pitch * np.exp(draws.parameters[:, 2])
+    drawn = draws.estimate(values, float(pitch * np.exp(best.parameters[2])))
+    return roll_off_ends(found.likelihood, best, drawn)
+
+
+def _moments(found: _Found, draws: WeightedDraws) -> RoughnessMoments | None:
+    likelihood, best = found.likelihood, found.best
+    drawn = modelled_moments(likelihood, draws, best.parameters)
+    if drawn is None:
+        return None
+    pitch = likelihood.sample.pitch
+    waves = (drawn.shortest / pitch, drawn.longest / pitch)
+    return replace(drawn, height=height_ends(likelihood, best, waves, drawn.height))
 
 
 def _whole_height(

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import cholesky, toeplitz
+from scipy.optimize import minimize
 from scipy.signal import lfilter
 from scipy.special import gamma, kv
 
@@ -17,7 +18,9 @@ from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import RollOffVerdict
 from jointbench.signal.band_limited.block_means import block_means, kernel_of
 from jointbench.signal.band_limited.known_transfer import KnownTransfer
+from jointbench.signal.band_limited.line_sample import line_sample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
+from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
 from jointbench.signal.surface.gaussian_filter import filter_waves
 from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.simulators.rough_surfaces.brownian import brownian_lines
@@ -66,6 +69,26 @@ def test_a_polynomial_leaves_the_likelihood_of_block_means_unchanged():
         block_means(one, 64, 1).log_likelihood(density) for one in (lines, tilted)
     )
     assert other == pytest.approx(level, abs=1e-6)
+
+
+def test_the_roll_off_ends_where_the_likelihood_has_fallen():
+    """Against a search that uses no derivative: a ratio test at 5 % has 3.84."""
+    profile = exponential(1500, 40, 3)
+    found = fit_band_limited([profile])
+    likelihood = SpectralLikelihood(line_sample([profile]))
+    model = found.model
+
+    def lost(level_and_hurst, roll_off):
+        level, hurst = level_and_hurst
+        return -likelihood(np.array([level, hurst, np.log(roll_off / PITCH), 0.0, 0.0]))
+
+    start = np.array([np.log(model.level), model.hurst])
+    ends = (found.roll_off.value, found.roll_off.low, found.roll_off.high)
+    values = [
+        minimize(lost, start, args=(one,), method="Nelder-Mead").fun for one in ends
+    ]
+    assert 2 * (values[1] - values[0]) > 3.5
+    assert 2 * (values[2] - values[0]) > 3.5
 
 
 def test_intervals_cover_h_roll_off_and_moments():
