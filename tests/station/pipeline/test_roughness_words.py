@@ -64,7 +64,7 @@ def test_a_g_open_over_a_decade_gives_way_to_s_at_its_pivot(
     assert run(monkeypatch, "surface", traces / "smooth.csv", "--json", target) == 0
     shown = capsys.readouterr().out
     assert "fm" not in shown
-    assert "µm² (0.00489 to 0.00715) at 500 nm" in shown
+    assert "µm² (0.00565 to 0.00808) at 500 nm" in shown
     found = json.loads(target.read_text(encoding="utf-8"))["files"][0]
     low, high = found["roughness_interval_m"]
     assert high > 10 * low
@@ -81,7 +81,7 @@ def test_the_report_follows_the_same_rule(traces):
     )
     items = surface_section(chains).items
     table = next(item for item in items if isinstance(item, DataTable))
-    assert table.rows[0][3].startswith("S = 0.00591 µm² (")
+    assert table.rows[0][3].startswith("S = 0.00676 µm² (")
     assert table.rows[1][3] == "98.67 pm (62.22 pm to 156.5 pm)"
 
 
