@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -119,9 +120,10 @@ class LumpedResidual:
             KeyError: no entry has that name.
         """
         name = term.candidate.effect.name
-        for entry in (*PROBES, *self.entries):
-            if entry.effect.name == name:
-                return entry
+        for entries in (PROBES, self.entries):
+            for entry in entries:
+                if entry.effect.name == name:
+                    return entry
         raise KeyError(name)
 
     def response(
@@ -305,7 +307,7 @@ def _windowed(
     r = short.expected(base, terms, resolution.oversampling)
     r -= short.campaign.response
     r /= bench.noise.sigma[:, :, None]
-    r *= _window(short, decay)
+    r *= _window(short.excitation, short.time_gate[0], decay)
     return r.ravel()
 
 
@@ -331,10 +333,13 @@ def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
     return bench.short[length]
 
 
-def _window(bench: LumpedResidual, decay: float) -> FloatArray:
-    n = bench.excitation.growth.size
-    time = (np.arange(n) - bench.time_gate[0]) / bench.campaign.sample_rate
-    return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
+@lru_cache(maxsize=8)
+def _window(excitation: Excitation, first: int, decay: float) -> FloatArray:
+    """Return exp(-t / decay) from the first sample on, 1 before it, read-only."""
+    time = (np.arange(excitation.growth.size) - first) / excitation.sample_rate
+    values = np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
+    values.flags.writeable = False
+    return values
 
 
 def gated_excitation(

@@ -89,11 +89,23 @@ def _assembled(
     variants, lines = ordered[-1][1].shape[0], ordered[0][1].shape[1]
     z = np.empty((n, n, variants, lines), dtype=np.complex128)
     for a in range(n):
-        z[a, a] = sum(value for ends, value in ordered if a in ends)
+        _add([value for ends, value in ordered if a in ends], z[a, a])
         for b in range(a):
-            z[a, b] = -sum(v for ends, v in ordered if a in ends and b in ends)
-            z[b, a] = z[a, b]
+            _add([v for ends, v in ordered if a in ends and b in ends], z[a, b])
+            np.negative(z[a, b], out=z[b, a])
+            z[a, b] = z[b, a]
     return z
+
+
+def _add(values: Sequence[ComplexArray], out: ComplexArray) -> None:
+    """Write the sum of values, the short ones first, to a larger array."""
+    if len(values) < 2:
+        out[...] = values[0] if values else 0.0
+        return
+    total = values[0]
+    for value in values[1:-1]:
+        total = total + value
+    np.add(total, values[-1], out=out)
 
 
 def state_of(

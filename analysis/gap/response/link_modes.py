@@ -140,7 +140,11 @@ def modes_across(
     poles, inputs, shapes = _one_of_each_pair(poles, left, shapes)
     repeat = conditions.preload.size // variants
     poles, inputs, shapes = (
-        np.ascontiguousarray(np.moveaxis(np.repeat(x, repeat, axis=0), 0, -1))
+        np.ascontiguousarray(
+            (np.repeat(x, repeat, axis=0) if repeat > 1 else x).transpose(
+                *range(1, x.ndim), 0
+            )
+        )
         for x in (poles, inputs, shapes)
     )
     return PortModes(poles, inputs, shapes)

@@ -312,6 +312,14 @@ def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
 
 
 @lru_cache(maxsize=8)
+def _decay(excitation: Excitation, oversampling: int) -> FloatArray:
+    """Return exp(-a t) at `oversampling` steps per sample, read-only."""
+    values = 1.0 / _growth(excitation, oversampling)
+    values.flags.writeable = False
+    return np.asarray(values)
+
+
+@lru_cache(maxsize=8)
 def _exponential(count: int, exponent: float) -> FloatArray:
     """Return exp(k exponent), k = 0, 1, ..., shape (count,), read-only."""
     values = np.exp(exponent * np.arange(count))
@@ -325,8 +333,8 @@ def _spectra(
     """Return damped spectra of forces up to Nyquist, (n_ports, n_records, n_lines)."""
     records = excitation.hit.size
     damped = np.multiply(
-        np.moveaxis(force, 1, 2)[:, :records],
-        1.0 / _growth(excitation, oversampling),
+        force.transpose(0, 2, 1)[:, :records],
+        _decay(excitation, oversampling),
         order="C",
     )
     spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=2)
