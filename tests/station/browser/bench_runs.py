@@ -44,7 +44,7 @@ def plan_file(folder: Path) -> Path:
     return path
 
 
-# WCAG 2.2: 4.5:1 for every text on the first ground behind it that is not transparent.
+# WCAG 2.2: 4.5:1 for every text on the first ground below it that is not transparent.
 ILLEGIBLE = """() => {
   const numbers = text => text.match(/[0-9.]+/g).map(Number);
   const part = v => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
