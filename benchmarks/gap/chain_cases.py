@@ -4,22 +4,32 @@
 The joint is that of `contact_campaigns` (summits one by one, boundary elements), its
 first assembly; two blocks are struck in every state with its stiffness, scaled into the
 band of a hammer; effects of the structure are those of the simulated campaigns. The
-contact law is that of the moments of the surface as measured, with their errors.
+contact law is that of the moments of the surface as measured, with their errors; an
+instrument with a coarse cut-off (`scale_cut`) is the effect of the surface.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from contact_campaigns import make_joint
+from contact_campaigns import JointCampaign, make_joint
+from contact_score import margins as contact_margins
 
 from jointbench.analysis.gap.chain.chain_records import LinkTest, SurfaceReading
+from jointbench.analysis.gap.chain.chain_settings import CHAIN
 from jointbench.analysis.gap.chain.joint_over_preload import BoltedStates
+from jointbench.analysis.gap.contact_bench.joint_states import JointData, JointRows
 from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.two_body_model import two_body_model
 from jointbench.simulators.campaigns.campaign_records import noisy
+from jointbench.simulators.detectability.expected_margin import (
+    expected_margin,
+    margin_scale,
+)
 from jointbench.simulators.hidden.campaign_design import (
     NOMINAL_SIGMA,
+    CampaignCondition,
+    CampaignDesign,
     draw_design,
     pulse_of,
 )
@@ -30,6 +40,7 @@ from jointbench.simulators.hidden.effect_draws import (
     resize_effect,
     specimen_scales,
 )
+from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 CONTACT = ("series_compliance", "contact_patch", "law_exponent", "film", "waviness")
 LUMPED = ("cubic_stiffness", "added_mass", "delay", "jenkins", "gain_error")
@@ -86,33 +97,61 @@ class ScaledLaw:
 
 def make_case(seed: int, link: str, effect: str) -> ChainCase:
     """Return a chain with an effect hidden at a link, or with none."""
-    joint = make_joint(seed, effect if link == "contact" else "")
-    data = joint.data
-    own = (data.rows.quantity == 0) & (data.states.assembly[data.rows.state] == 0)
-    rows = data.rows.chosen(own & ~data.states.falling[data.rows.state])
+    joint = make_joint(seed, "" if link == "structure" else effect)
+    rows = _rows(joint.data)
     stiffness = np.exp(rows.value)
     scale = _MIDDLE / float(np.median(stiffness))
-    log_p = data.nominal_log_preload[rows.state]
-    facts = replace(
-        data.facts,
-        area=data.facts.area,
-        modulus=data.facts.modulus * scale,
-    )
-    campaigns = _struck(seed, np.exp(log_p), stiffness * scale, link, effect)
+    facts = replace(joint.data.facts, modulus=joint.data.facts.modulus * scale)
+    preload = np.exp(joint.data.nominal_log_preload[rows.state])
+    design, hidden = _struck(seed, preload, stiffness * scale, link, effect)
     states = BoltedStates(
-        f"chain-{seed}", facts, np.exp(log_p), np.zeros(log_p.size, dtype=np.int64)
+        f"chain-{seed}", facts, preload, np.zeros(preload.size, dtype=np.int64)
     )
     law = ScaledLaw(joint.law, float(np.log(scale)))
     reading = SurfaceReading(law, LinkTest(0.0, 0, passed=True))
+    campaigns = _measured(seed, design, hidden)
     return ChainCase(link, effect, reading, campaigns, states, scale)
+
+
+def expected(seed: int, link: str, effect: str) -> float:
+    """Return the expected margin of a hidden effect at its own link [-].
+
+    At the contact over the stiffness in each state, known to the least sd of a reading;
+    at the structure over the hits of one state, the joint free.
+    """
+    joint = make_joint(seed, "" if link == "structure" else effect)
+    if link != "structure":
+        return contact_margins(_as_read(joint))[0]
+    rows = _rows(joint.data)
+    stiffness = np.exp(rows.value)
+    scale = _MIDDLE / float(np.median(stiffness))
+    preload = np.exp(joint.data.nominal_log_preload[rows.state])
+    design, hidden = _struck(seed, preload, stiffness * scale, link, effect)
+    first = tuple(c for c in design.conditions if c.preload == float(preload[0]))
+    one = replace(design, conditions=first)
+    return expected_margin(margin_scale(one), hidden[0]).margin
+
+
+def _rows(data: JointData) -> JointRows:
+    """Return the normal stiffness of the rising states of the first assembly."""
+    own = (data.rows.quantity == 0) & (data.states.assembly[data.rows.state] == 0)
+    return data.rows.chosen(own & ~data.states.falling[data.rows.state])
+
+
+def _as_read(joint: JointCampaign) -> JointCampaign:
+    """Return a joint with the values that a chain reads, without scatter and noise."""
+    rows = _rows(joint.clean)
+    known = replace(rows, covariance=CHAIN.reading_sd**2 * np.eye(rows.value.size))
+    return replace(joint, clean=replace(joint.clean, rows=known))
 
 
 def _struck(
     seed: int, preload: np.ndarray, stiffness: np.ndarray, link: str, effect: str
-) -> tuple[Campaign, ...]:
-    """Strike two blocks in every state of their joint."""
+) -> tuple[CampaignDesign, tuple[HiddenEffect, ...]]:
+    """Plan hits on two blocks in every state of their joint, and draw the effect."""
     design = draw_design(seed, grid="small", noise=0.05, hit_scatter=0.001)
-    rng, first, found = np.random.default_rng([seed, 79]), design.conditions[0], []
+    rng, first = np.random.default_rng([seed, 79]), design.conditions[0]
+    found: list[CampaignCondition] = []
     for p, k in zip(preload, stiffness, strict=True):
         for body, level in _HITS:
             found.append(
@@ -132,18 +171,23 @@ def _struck(
                 )
             )
     design = replace(design, conditions=tuple(found))
-    hidden = ()
-    if link == "structure":
-        drawn = draw_effect(
-            effect, specimen_scales(design), np.random.default_rng([seed, 12])
-        )
-        hidden = (resize_effect(drawn, _SIZE),)
+    if link != "structure":
+        return design, ()
+    rng = np.random.default_rng([seed, 12])
+    drawn = draw_effect(effect, specimen_scales(design), rng)
+    return design, (resize_effect(drawn, _SIZE),)
+
+
+def _measured(
+    seed: int, design: CampaignDesign, hidden: tuple[HiddenEffect, ...]
+) -> tuple[Campaign, ...]:
+    """Strike; return the hits of each state."""
     force, response = noisy(design, *simulate_records(design, hidden))
     model = two_body_model(dict(design.nominal), dict(NOMINAL_SIGMA))
     campaigns = []
-    for p in preload:
-        own = np.array([c.preload == float(p) for c in found])
-        kept = [c for c in found if c.preload == float(p)]
+    for p in dict.fromkeys(c.preload for c in design.conditions):
+        own = np.array([c.preload == p for c in design.conditions])
+        kept = [c for c in design.conditions if c.preload == p]
         campaigns.append(
             Campaign(
                 f"chain-{seed}",
@@ -152,9 +196,9 @@ def _struck(
                 response[own],
                 np.array([c.hit_dof for c in kept]),
                 np.array([c.level for c in kept]),
-                np.full(len(kept), float(p)),
+                np.full(len(kept), p),
                 np.arange(len(kept), dtype=float),
-                float(p),
+                p,
                 model,
             )
         )

@@ -5,7 +5,9 @@
 
     python benchmarks/gap/chain_score.py --seed 700 --count 30 --out /tmp/chain.jsonl
 
-Appends one JSON line for each chain, continues where it ended, and prints the counts.
+Appends one JSON line for each chain, continues where it ended, and prints the counts:
+of all chains, and of those whose effect has an expected margin of 50 or more at its own
+link, with their 95 % Wilson intervals.
 """
 
 import argparse
@@ -13,7 +15,9 @@ import json
 import time
 from pathlib import Path
 
-from chain_cases import CONTACT, LUMPED, make_case
+import numpy as np
+from chain_cases import CONTACT, LUMPED, expected, make_case
+from outcomes import NAMEABLE, share_text
 
 from jointbench.analysis.gap.chain.chain_diagnosis import diagnose_chain
 from jointbench.analysis.gap.chain.locate_link import Chain
@@ -21,13 +25,15 @@ from jointbench.analysis.gap.chain.lumped_structure import read_lumped
 
 
 def hidden_in(seed: int) -> tuple[str, str]:
-    """Return link and effect of a seed: contact, structure, none, in turn."""
-    turn, number = seed % 5, seed // 5
-    if turn == 4:
+    """Return link and effect of a seed; links take turns, and effects at a link."""
+    turn, number = seed % 6, seed // 6
+    if turn == 5:
         return "", ""
-    if turn % 2 == 0:
-        return "contact", CONTACT[(2 * number + turn // 2) % len(CONTACT)]
-    return "structure", LUMPED[(2 * number + turn // 2) % len(LUMPED)]
+    if turn == 4:
+        return "surface", "scale_cut"
+    at, effects = (2 * number + turn // 2), CONTACT if turn % 2 == 0 else LUMPED
+    link = "contact" if turn % 2 == 0 else "structure"
+    return link, effects[at % len(effects)]
 
 
 def judged(seed: int) -> dict[str, object]:
@@ -45,6 +51,7 @@ def judged(seed: int) -> dict[str, object]:
         ]
     return {
         "seed": seed,
+        "margin": expected(seed, link, effect) if link else 0.0,
         "link": link,
         "effect": effect,
         "finding": found.finding.value,
@@ -96,13 +103,28 @@ def main() -> None:
             done.append(judged(seed))
             with given.out.open("a") as file:
                 file.write(json.dumps(done[-1]) + "\n")
-    counts: dict[str, dict[str, int]] = {}
-    for row in done:
-        link, name = outcome(row)
-        own = counts.setdefault(row["link"] or "none", {})
-        for key in ("n", f"link {link}", f"name {name}"):
-            own[key] = own.get(key, 0) + 1
-    print(json.dumps(counts, indent=1))
+    hidden = [row for row in done if row["link"]]
+    print(f"nothing missing: {shares([r for r in done if not r['link']])}")
+    print(f"one effect, all: {shares(hidden)}")
+    strong = [row for row in hidden if row["margin"] >= NAMEABLE]
+    print(f"one effect, margin >= {NAMEABLE:g}: {shares(strong)}")
+    for effect in (*CONTACT, "scale_cut", *LUMPED):
+        print(f"  {effect}: {shares([r for r in strong if r['effect'] == effect])}")
+    seconds = [row["cpu_s"] for row in done]
+    print(f"CPU s of a diagnosis: median {np.median(seconds):.1f}, {max(seconds):.1f}")
+
+
+def shares(rows: list[dict]) -> str:
+    """Return how many links and names are right, ambiguous and wrong, in words."""
+    if not rows:
+        return "none"
+    pairs = [outcome(row) for row in rows]
+    words = []
+    for at, what in enumerate(("link", "name")):
+        for word in ("right", "ambiguous", "wrong"):
+            count = sum(pair[at] == word for pair in pairs)
+            words.append(f"{what} {word} {share_text(count, len(rows))}")
+    return "; ".join(words)
 
 
 if __name__ == "__main__":

@@ -316,7 +316,9 @@ def _damped(
         cn = cn + size * cn.min()
     if effect == "gas_film":
         gap = plan.contact.gap(p)
-        cn = cn + size * cn.min() * (gap.max() / gap) ** 3
+        # Closed surfaces keep a thousandth of the gap in their valleys.
+        left = np.maximum(gap, 1e-3 * gap.max())
+        cn = cn + size * cn.min() * (left.max() / left) ** 3
     if effect == "microslip_damping":
         x = np.minimum(plan.states.shear / (plan.friction * p), 0.95)
         # Loss of Cattaneo and Mindlin over the energy that is stored, to all orders.
