@@ -79,9 +79,9 @@ class ChainBenchSettings:
         41, "points", "stiffnesses at which the hits are predicted first"
     )
     scan_windows: tuple[float, ...] = numerical(
-        (0.003, 0.01),
+        (0.01, 0.003),
         "s",
-        "windows of these predictions",
+        "windows of these predictions, that of the first start before the others",
         "chains 8209 and 8269 of benchmarks/gap/chain_score.py: in 10 ms a joint that "
         "is far too stiff fits as well as the right one",
     )

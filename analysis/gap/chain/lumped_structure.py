@@ -199,10 +199,13 @@ def _fitted(
         settled, fit = fit_base(bench)
         if not isinstance(settled, LumpedBench):
             raise TypeError("a fit must return a bench of the type it was given")
-        found.append(FittedState(settled, fit))
+        state = FittedState(settled, fit)
         if fit.chi2 <= CHAIN.least_explained * settled.blocks.dof:
-            break
-    return min(found, key=lambda state: state.before.chi2 / state.bench.blocks.dof)
+            return state
+        found.append(state)
+    # With an effect to be found none explains its hits, and their noise hides which is
+    # the least poor.
+    return found[0]
 
 
 def _freed(campaign: Campaign, link: int, factor: float) -> Campaign:
