@@ -118,6 +118,8 @@ def _refined(
     model = at.response(base, terms)
     residual = model - bench.campaign.response
     bench.mask(residual)
+    if not np.isfinite(np.vdot(residual, residual)):
+        return settle(bench, None)  # a joint that diverges tells nothing of the noise
     sigma = _channel_noise(at, model, residual, seen)
     columns = _force_columns(bench, base, sigma)
     at = replace(at, noise=replace(bench.noise, sigma=sigma))
@@ -138,6 +140,8 @@ def _refined(
         np.maximum(np.exp(off) * (1.0 + rise) - rise, RESIDUALS.least_stiffness_factor)
     )
     expanded = _expanded(refined, settling, base, terms, columns)
+    if expanded is None:
+        return settle(refined, None)
     left = expanded.residual(base, terms, FULL)
     if left @ left > bench.policy.far_chi2 * bench.blocks.dof:
         return settle(refined, None)
@@ -240,16 +244,18 @@ def _expanded(
     base: FloatArray,
     terms: Sequence[Term],
     columns: list[FloatArray],
-) -> SomeBench:
+) -> SomeBench | None:
     """Return the bench expanded about a settling, with its scatter whitened there.
 
     The slope of the expansion is then the same direction that is whitened, so that no
-    part of the settling remains.
+    part of the settling remains. None where a nonlinear joint diverges there.
     """
     there = settle(bench, settling)
     sigma = bench.noise.sigma
     moved = there.response(base, terms)
     ways = scatter_columns(there, base, terms, moved)
+    if not np.isfinite(np.vdot(ways, ways)):
+        return None
     slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
     whitened = _with_noise(there, bench.noise, columns, ways)
     settled = Settled(base.copy(), slope, there.rise(terms))

@@ -74,6 +74,16 @@ def test_the_inverse_holds_for_any_number_of_bodies(bodies: int) -> None:
     assert np.abs(product - one).max() < 1e-12
 
 
+def test_noise_is_not_estimated_where_the_joint_diverges() -> None:
+    """The bench keeps its noise at an effect that pulls the joint apart."""
+    bench = make_bench(made.made_campaign([]))
+    term = made.term_of(bench, "cubic_stiffness", "link:joint", [-1e17])
+    assert not np.isfinite(bench.response(np.zeros(6), (term,))).all()
+    kept = bench.refine(np.zeros(6), (term,))
+    assert np.array_equal(kept.noise.sigma, bench.noise.sigma)
+    assert not kept.expanded
+
+
 def test_a_delay_moves_the_response_by_whole_samples() -> None:
     """Two samples of delay are a shift by two rows."""
     bench = make_bench(made.quiet_campaign())
