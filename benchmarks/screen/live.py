@@ -146,10 +146,17 @@ def cpu(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def opened(browser: Browser, link: str) -> Page:
-    """Open a page and wait for its first hit."""
-    page = browser.new_context(viewport={"width": 1400, "height": 1000}).new_page()
-    page.goto(link)
+def opened(browser: Browser, link: str, first: Page | None = None) -> Page:
+    """Open a page and wait for its first hit.
+
+    A link admits one browser: further pages come with the cookie of the first.
+    """
+    known = None if first is None else first.context.storage_state()
+    context = browser.new_context(
+        viewport={"width": 1400, "height": 1000}, storage_state=known
+    )
+    page = context.new_page()
+    page.goto(link if first is None else link.partition("?")[0])
     page.locator("#verdict", has_text="HIT").wait_for(timeout=120_000)
     return page
 
@@ -159,7 +166,9 @@ def live(browser: Browser, pages: int, seconds: float, priority: int) -> Live:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         with bench(folder) as (link, server, _):
-            shown = [opened(browser, link) for _ in range(pages)]
+            shown: list[Page] = []
+            for _ in range(pages):
+                shown.append(opened(browser, link, *shown[:1]))
             if pages > 1:
                 shown[-1].evaluate("() => { setTimeout(() => { for (;;); }, 0); }")
             hasten(priority)
