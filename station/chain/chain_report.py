@@ -2,6 +2,7 @@
 """The report of a chain as one HTML file."""
 
 from jointbench.acquisition.records.session import software_version
+from jointbench.analysis.gap.chain.chain_diagnosis import structure_holds
 from jointbench.station.chain.chain_figure import HEIGHT, chain_figure
 from jointbench.station.chain.chain_tables import (
     cause_rows,
@@ -68,7 +69,7 @@ def chain_sections(done: ExaminedChain) -> tuple[Section, ...]:
         Section("links", "Where the disagreement enters", (Text(found.reason), tests)),
         Section("causes", "Causes at the joint", _causes(done)),
         Section("moved", "Every later quantity", _moved(done)),
-        *contact_sections(found.contact),
+        *(contact_sections(found.contact) if structure_holds(found.chain) else ()),
     )
 
 
@@ -97,6 +98,8 @@ def _tiles(done: ExaminedChain) -> tuple[Tile, ...]:
 
 def _causes(done: ExaminedChain) -> tuple[Item, ...]:
     rows = cause_rows(done)
+    if not structure_holds(done.found.chain):
+        return (Text("Not judged: the structure does not explain its own hits."),)
     if not rows:
         return (Text("No cause at the joint was named."),)
     columns = ("cause", "factor on the stiffness", "95 %")

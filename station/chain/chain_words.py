@@ -38,6 +38,8 @@ def chain_headline(done: ExaminedChain) -> str:
     if len(found.location.places) > 1:
         words = " or ".join(place.words for place in found.location.places)
         return f"The disagreement enters at {words}; these data cannot separate them"
+    if family := found.chain.structure.family:
+        return f"{where}: {family.replace(':', ' ')} explains most of it"
     return f"{where}: {names}" if names else f"{where}; no effect explains it"
 
 

@@ -45,7 +45,8 @@ class ChainDiagnosis:
         location: links at which the disagreement may enter.
         contact: diagnosis of the joint, by the law of the corrected surfaces and the
             corrected structure.
-        several: causes at the joint with their factors; None where none is named.
+        several: causes at the joint with their factors; None where none is named, or
+            where the structure does not hold.
         finding: verdict on the whole chain.
         names: effects that were found, as ``name@site``, along the chain.
         reason: basis of the verdict.
@@ -92,11 +93,12 @@ def diagnose_chain(
         raise TypeError("the search must return a bench of the type it was given")
     contact = conclude_contact(outcome, final)
     several = None
-    if not outcome.base_acceptance.passed and not too_few(data):
+    judged = structure_holds(chain) and not too_few(data)
+    if judged and not outcome.base_acceptance.passed:
         several = _causes(outcome, final, contact, progress)
     if (test := _explained(outcome, final)) is not None:
         location = with_explained(location, test)
-    location = _decided(location, chain, contact)
+    location = _at_structure(_decided(location, chain, contact), chain)
     found = ChainDiagnosis(chain, location, contact, several, Finding.NONE, (), "", "")
     return _concluded(found)
 
@@ -133,6 +135,27 @@ def _decided(location: Location, chain: Chain, contact: ContactDiagnosis) -> Loc
     others = tuple(one for one in location.places if one.links not in both)
     kept = tuple(restored[links] for links in both if links in shown)
     return replace(location, places=(*kept, *others))
+
+
+def _at_structure(location: Location, chain: Chain) -> Location:
+    """Place the disagreement at a structure that does not explain its own hits.
+
+    The joint is free in each state, which takes up whatever contact law and surfaces
+    do: what it leaves is of the structure, also where no effect restores it.
+    """
+    if location.places or structure_holds(chain) or not chain.surface.test.passed:
+        return location
+    alone = tuple(h for h in location.hypotheses if h.links == (ChainLink.STRUCTURE,))
+    return replace(location, places=alone)
+
+
+def structure_holds(chain: Chain) -> bool:
+    """Return whether the structure explains its hits, with its effects if any.
+
+    Where it does not, its reading of the joint is no evidence on contact and surfaces.
+    """
+    own = chain.structure
+    return own.before.test.passed or (own.after is not None and own.after.test.passed)
 
 
 def _links_of(contact: ContactDiagnosis) -> set[tuple[ChainLink, ...]]:
@@ -203,11 +226,14 @@ def _concluded(found: ChainDiagnosis) -> ChainDiagnosis:
     verdicts = [_verdict(found, link) for link in links]
     worst = max(verdicts, key=_SEVERITY.index)
     words = places[0].words
+    basis = _basis(found, links)
+    if not structure_holds(found.chain):
+        basis += "; until it is mended, contact law and surfaces cannot be judged"
     return replace(
         found,
         finding=worst,
         names=_names(found, links),
-        reason=f"the disagreement enters at {words}; {_basis(found, links)}",
+        reason=f"the disagreement enters at {words}; {basis}",
         experiment=_experiment(found, links),
     )
 

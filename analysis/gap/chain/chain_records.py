@@ -71,6 +71,8 @@ class StructureReading:
         effects: of the structure that were found.
         reason: basis of the verdict.
         experiment: what to measure next.
+        family: of the force law that explains most of the gap, and where; empty unless
+            the finding is mostly.
     """
 
     before: JointReading
@@ -79,6 +81,7 @@ class StructureReading:
     effects: tuple[NamedEffect, ...] = ()
     reason: str = ""
     experiment: str = ""
+    family: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -123,8 +123,9 @@ def read_lumped(
                 before,
                 finding=finding,
                 effects=() if found is None else found.effects,
-                reason=reading.test.reason,
+                reason=reading.test.reason if found is None else found.reason,
                 experiment="" if found is None else found.experiment,
+                family=_family(found),
             ),
             tuple(states),
             link,
@@ -252,6 +253,13 @@ def _squares(residual: FloatArray) -> float:
     return float(residual @ residual)
 
 
+def _family(found: Diagnosis | None) -> str:
+    """Return family and site of the law that explains most of the gap, in words."""
+    if found is None or found.verdict is not Finding.MOSTLY or found.partial is None:
+        return ""
+    return f"{found.partial.family} at {found.partial.site}"
+
+
 def _with_effects(
     state: FittedState, bench: LumpedBench, fit: Fit, link: int
 ) -> FittedState:
@@ -278,13 +286,13 @@ def _with_effects(
         if tried[-1].chi2 <= CHAIN.least_explained * own.blocks.dof:
             break
     finite = [one for one in tried if np.isfinite(one.residual).all()]
-    if not finite:
-        return state
-    early = min(finite, key=lambda one: one.cost)
-    # Scatter and noise at a fit that lacks the effect hide what the effect explains.
-    refined = own.refine(early.base, early.terms)
-    after = minimise(make_problem(refined, fit.candidates), early.x)
-    return replace(state, after=after, corrected=refined)
+    for early in sorted(finite, key=lambda one: one.cost):
+        # Scatter and noise at a fit that lacks the effect hide what it explains.
+        refined = own.refine(early.base, early.terms)
+        after = minimise(make_problem(refined, fit.candidates), early.x)
+        if after.chi2 <= CHAIN.least_explained * refined.blocks.dof:
+            return replace(state, after=after, corrected=refined)
+    return state
 
 
 def _coordinates(

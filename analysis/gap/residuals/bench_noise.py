@@ -119,7 +119,7 @@ def _refined(
     residual = model - bench.campaign.response
     bench.mask(residual)
     if not np.isfinite(np.vdot(residual, residual)):
-        return settle(bench, None)  # a joint that diverges tells nothing of the noise
+        return settle(bench, None)  # a joint that diverges shows nothing of the noise
     sigma = _channel_noise(at, model, residual, seen)
     columns = _force_columns(bench, base, sigma)
     at = replace(at, noise=replace(bench.noise, sigma=sigma))

@@ -1,5 +1,7 @@
 """The link at which a chain disagrees, from readings of its links."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -85,6 +87,22 @@ def test_a_fault_of_the_structure_is_found_there() -> None:
     """Only the structure fails; with its effect the joint is that of the law."""
     location = locate(chain(0.5 * RIGHT**0.8, test=BAD, after=RIGHT))
     assert [p.links for p in location.places] == [(ChainLink.STRUCTURE,)]
+
+
+def test_a_structure_that_no_effect_restores_is_the_place() -> None:
+    """With the joint free in each state, what is left is of the structure.
+
+    Its stiffness of the joint is not that of the law, and is no evidence on it.
+    """
+    failing = chain(0.01 * RIGHT**1.1, test=BAD)
+    structure = replace(
+        failing.structure, finding=Finding.MOSTLY, reason="friction", family="friction"
+    )
+    found = diagnose_chain(replace(failing, structure=structure))
+    assert found.links == (ChainLink.STRUCTURE,)
+    assert found.finding is Finding.MOSTLY
+    assert found.several is None
+    assert "cannot be judged" in found.reason
 
 
 def test_a_fault_of_the_surfaces_is_found_there() -> None:

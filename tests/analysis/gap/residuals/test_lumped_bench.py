@@ -75,7 +75,7 @@ def test_the_inverse_holds_for_any_number_of_bodies(bodies: int) -> None:
 
 
 def test_noise_is_not_estimated_where_the_joint_diverges() -> None:
-    """The bench keeps its noise at an effect that pulls the joint apart."""
+    """The bench keeps its noise at an effect that drives the joint apart."""
     bench = make_bench(made.made_campaign([]))
     term = made.term_of(bench, "cubic_stiffness", "link:joint", [-1e17])
     assert not np.isfinite(bench.response(np.zeros(6), (term,))).all()
