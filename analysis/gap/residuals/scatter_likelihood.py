@@ -107,8 +107,7 @@ def weigh(
     root = np.sqrt(variance)
     if rho == 0.0:
         spread = records.factor * root[:, None, :]
-        inner = np.eye(k) + spread @ spread.transpose(0, 2, 1)
-        half = np.linalg.inv(np.linalg.cholesky(inner))
+        half = np.linalg.inv(_whitener(spread))
         log_determinant = -2.0 * np.sum(np.log(np.diagonal(half, axis1=1, axis2=2)))
         left = half @ records.factor
         residual = (half @ records.along[:, :, None])[:, :, 0]
@@ -123,8 +122,9 @@ def weigh(
         covariance = np.einsum("ik,jk,ij,kl->ikjl", root, root, between, np.eye(k))
         covariance = covariance.reshape(n * k, n * k)
         factor = scipy.linalg.block_diag(*records.factor)
-        inner = np.eye(n * k) + factor @ covariance @ factor.T
-        lower = np.linalg.cholesky(inner)
+        root_of_between = np.linalg.cholesky(between)
+        spread = np.einsum("iak,ik,ij->iajk", records.factor, root, root_of_between)
+        lower = _whitener(spread.reshape(n * k, n * k))
         log_determinant = 2.0 * np.sum(np.log(np.diag(lower)))
         both = np.concatenate([factor, records.along.reshape(-1, 1)], axis=1)
         both = scipy.linalg.solve_triangular(lower, both, lower=True)
@@ -139,6 +139,22 @@ def weigh(
         score.ravel(),
         predicted,
     )
+
+
+def _whitener(spread: FloatArray) -> FloatArray:
+    """Return the lower factor of 1 + A A', A of shape (..., n, n).
+
+    A joint near divergence has derivatives for which the 1 is lost beside A A'; its
+    factor then comes from A itself, by an orthogonal decomposition.
+    """
+    one = np.broadcast_to(np.eye(spread.shape[-1]), spread.shape)
+    across = np.swapaxes(spread, -1, -2)
+    try:
+        return np.linalg.cholesky(one + spread @ across)
+    except np.linalg.LinAlgError:
+        upper = np.linalg.qr(np.concatenate([across, one], axis=-2), mode="r")
+    sign = np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)
+    return np.swapaxes(sign[..., :, None] * upper, -1, -2)
 
 
 def deviance(
