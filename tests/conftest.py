@@ -28,13 +28,19 @@ if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
     sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"]
     sys.dont_write_bytecode = False
 
-CPU_LIMIT = 120.0
-"""CPU time of this process, all threads, after which a test is stopped [s]."""
-MOST_CPU = 20.0
-"""CPU time, child processes included, that a test may take without a mark [s].
+CPU_LIMIT = 300.0
+"""CPU time of this process, all threads, after which a test is stopped [s].
 
-Twice what the slowest of them take, compilation included: machines differ.
+Several times what the largest takes on a machine that is busy with other work, where
+the same computation costs three times the CPU time it costs alone.
 """
+MOST_CPU = 20.0
+"""CPU time, child processes included, above which a test is listed at the end [s].
+
+A list and no failure: the same test took 10 s on one machine and 32 s on another, with
+compilation (docs/decisions/0376). A test that states why it costs much is left out.
+"""
+_COSTLY = pytest.StashKey[list[str]]()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -105,7 +111,7 @@ def _note_cost(item: pytest.Item, taken: float) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
-    """Fail a test that costs much and does not state why.
+    """Note a test that costs much and does not state why.
 
     A campaign that is shorter, a fixture that is shared, or a statistic that moves to
     `benchmarks` makes it cheaper; where nothing does, it is marked `heavy`.
@@ -114,11 +120,20 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     result = yield
     taken = _cpu_time() - begun
     if taken > MOST_CPU and item.get_closest_marker("heavy") is None:
-        raise CpuTimeExceeded(
-            f"{taken:.1f} s of CPU time in one test (limit {MOST_CPU:g} s); make it "
-            "smaller, or mark it `@pytest.mark.heavy(reason=...)`"
-        )
+        costly = item.config.stash.setdefault(_COSTLY, [])
+        costly.append(f"{taken:.1f} s  {item.nodeid}")
     return result
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """List the tests that cost much; `heavy` states that one cannot be smaller."""
+    costly = config.stash.get(_COSTLY, [])
+    if costly:
+        terminalreporter.section(f"more than {MOST_CPU:g} s of CPU time in one test")
+        for line in costly:
+            terminalreporter.line(line)
 
 
 def _cpu_time() -> float:
