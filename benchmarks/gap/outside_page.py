@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Write docs/gap-outside.md from the runs of forced_answers.py.
 
-Usage: python benchmarks/gap/outside_page.py RUNS.jsonl > docs/gap-outside.md
+Usage: python benchmarks/gap/outside_page.py RUNS.jsonl --engine 9a158095
+           > docs/gap-outside.md
 """
 
 import argparse
@@ -60,13 +61,17 @@ def _row(label: str, runs: Sequence[Run]) -> str:
     return f"| {label} | {len(runs)} | {' | '.join(cells)} | {ends} |"
 
 
-def page(every: Sequence[Run]) -> str:
+def page(every: Sequence[Run], engine: str) -> str:
     """Return the page."""
     runs = [r for r in every if r["kind"] == "outside"]
+    seeds = [r["seed"] for r in runs]
     clear = [r for r in runs if r["margin"] >= NAMEABLE]
     faint = [r for r in runs if r["margin"] < NAMEABLE]
     lines = [
         _INTRO,
+        f"Engine: {engine}, seeds {min(seeds)} to {max(seeds)}, drawn after its last "
+        "change.",
+        "",
         "| effect | n | wrong name | ambiguous | right family | unknown | none | "
         "margins |",
         "|---" * 8 + "|",
@@ -100,8 +105,10 @@ def main() -> None:
     """Print the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", type=Path)
-    text = parser.parse_args().runs.read_text(encoding="utf-8")
-    print(page([json.loads(line) for line in text.splitlines()]))
+    parser.add_argument("--engine", required=True, help="commit that was judged")
+    arguments = parser.parse_args()
+    text = arguments.runs.read_text(encoding="utf-8")
+    print(page([json.loads(line) for line in text.splitlines()], arguments.engine))
 
 
 if __name__ == "__main__":
