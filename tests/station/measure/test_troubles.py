@@ -11,10 +11,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
+from finished_files import is_whole
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.session_file.store import read_session
-from jointbench.station.commands.verify_command import run_verify
 from jointbench.station.measure.bench_session import run_measure
 from jointbench.station.measure.session_record import Record
 from jointbench.station.screen.interrupt import (
@@ -102,7 +102,7 @@ def test_ctrl_c_leaves_a_finished_file(tmp_path: Path, word: str) -> None:
                 process.send_signal(signal.SIGINT)
                 break
         process.communicate(timeout=300)
-    assert run_verify(tmp_path / "s.h5", json_target=None)
+    assert is_whole(tmp_path / "s.h5")
     ends = [dict(s.detail) for s in read_session(tmp_path / "s.h5").provenance]
     assert any(end.get("interrupted") is True for end in ends)
     assert not (tmp_path / "s.h5.part").exists()
@@ -122,7 +122,7 @@ def test_a_polite_kill_leaves_a_finished_file(tmp_path: Path, name: str) -> None
                 break
         process.communicate(timeout=300)
     assert process.returncode == 5
-    assert run_verify(tmp_path / "s.h5", json_target=None)
+    assert is_whole(tmp_path / "s.h5")
     ends = [dict(s.detail) for s in read_session(tmp_path / "s.h5").provenance]
     assert any(end.get("interrupted") is True for end in ends)
     assert {p.name for p in tmp_path.iterdir()} == {"s.h5", "plan.toml"}
@@ -174,7 +174,7 @@ def test_a_terminal_that_is_closed_leaves_a_finished_file(tmp_path: Path) -> Non
         seen += os.read(terminal, 65_536)
     os.close(terminal)
     assert process.wait(timeout=300) == 5
-    assert run_verify(tmp_path / "s.h5", json_target=None)
+    assert is_whole(tmp_path / "s.h5")
     assert json.loads((tmp_path / "s.json").read_text())["interrupted"] is True
     assert not (tmp_path / "s.h5.lock").exists()
 
