@@ -50,7 +50,7 @@ def test_waiting_calls_tasks_and_garbage_leave_room_for_another_client(
 ) -> None:
     """Event streams and endless waits up to the limit, tasks up to the limit.
 
-    Without room the client would wait for ever; a busy machine serves all slowly.
+    Without room the client would wait without limit; a busy machine serves all slowly.
     """
     undisturbed = serve_another_client(server)
     own = (("grpc.use_local_subchannel_pool", 1),)
