@@ -35,12 +35,6 @@ MOST_CPU = 20.0
 
 Twice what the slowest of them take, compilation included: machines differ.
 """
-BUSY_FACTOR = 3.0
-"""Limit on a busy machine over that on a quiet one [-].
-
-Where processes share caches and cores, the same work was seen to take two to three
-times the CPU time (docs/decisions/0405).
-"""
 
 
 @pytest.hookimpl(wrapper=True)
@@ -119,28 +113,12 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     begun = _cpu_time()
     result = yield
     taken = _cpu_time() - begun
-    limit = _most_cpu(_load(), os.cpu_count() or 1)
-    if taken > limit and item.get_closest_marker("heavy") is None:
+    if taken > MOST_CPU and item.get_closest_marker("heavy") is None:
         raise CpuTimeExceeded(
-            f"{taken:.1f} s of CPU time in one test (limit {limit:g} s); make it "
+            f"{taken:.1f} s of CPU time in one test (limit {MOST_CPU:g} s); make it "
             "smaller, or mark it `@pytest.mark.heavy(reason=...)`"
         )
     return result
-
-
-def _most_cpu(load: float, cores: int) -> float:
-    """Return the CPU time that a test may take without a mark [s].
-
-    Args:
-        load: processes that want to run, these tests included.
-        cores: of the machine.
-    """
-    return MOST_CPU * (BUSY_FACTOR if load > cores + 1.0 else 1.0)
-
-
-def _load() -> float:
-    """Return the processes that wanted to run in the last minutes; 0 where unknown."""
-    return max(os.getloadavg()[:2]) if hasattr(os, "getloadavg") else 0.0
 
 
 def _cpu_time() -> float:

@@ -1,6 +1,5 @@
 """The limit of a test counts CPU time, not the wall clock."""
 
-import runpy
 import signal
 import subprocess
 import sys
@@ -47,12 +46,8 @@ def test_a_test_that_computes_is_stopped_and_one_that_waits_is_not(
     text = CONFTEST.read_text(encoding="utf-8")
     limited = text.replace("CPU_LIMIT = 120.0", "CPU_LIMIT = 0.6")
     assert limited != text
-    for old, new in (
-        ("MOST_CPU = 20.0", "MOST_CPU = 0.3"),
-        ("BUSY_FACTOR = 3.0", "BUSY_FACTOR = 1.0"),
-    ):
-        text, limited = limited, limited.replace(old, new)
-        assert limited != text
+    text, limited = limited, limited.replace("MOST_CPU = 20.0", "MOST_CPU = 0.3")
+    assert limited != text
     (tmp_path / "conftest.py").write_text(limited, encoding="utf-8")
     (tmp_path / "test_two.py").write_text(TESTS, encoding="utf-8")
     run = subprocess.run(
@@ -75,14 +70,3 @@ def test_a_test_that_computes_is_stopped_and_one_that_waits_is_not(
     assert "2 failed, 2 passed" in run.stdout
     assert "more than 0.6 s of CPU time" in run.stdout
     assert "(limit 0.3 s)" in run.stdout
-
-
-@pytest.mark.parametrize(
-    ("load", "cores", "limit"),
-    [(1.0, 2, 20.0), (3.0, 2, 20.0), (3.5, 2, 60.0), (9.0, 16, 20.0)],
-)
-def test_a_busy_machine_has_a_higher_limit(
-    load: float, cores: int, limit: float
-) -> None:
-    """The same work takes more CPU time there; a machine with a core left is quiet."""
-    assert runpy.run_path(str(CONFTEST))["_most_cpu"](load, cores) == limit
