@@ -27,8 +27,6 @@ from jointbench.simulators.hidden.campaign_response import simulate_records
 from jointbench.simulators.hidden.campaign_sampling import SAMPLES
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
-pytestmark = pytest.mark.timeout(400)
-
 
 def diagnosed(
     campaign: SimulatedCampaign,

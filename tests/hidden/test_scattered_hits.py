@@ -17,8 +17,6 @@ from jointbench.analysis.gap.model.diagnosis_record import Finding
 
 SIMULATION = Path(__file__).parents[2] / "benchmarks" / "gap" / "scattered_campaigns.py"
 
-pytestmark = pytest.mark.timeout(400)
-
 
 def drawing() -> ModuleType:
     """Load the simulation of the benchmark by its path."""

@@ -13,7 +13,6 @@ Bayesian Analysis 1, 515).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.analysis.gap.reassembly.assembly_rows import AssemblyRows
@@ -130,15 +129,16 @@ def _restricted_likelihood(
     rows: AssemblyRows, columns: FloatArray, between: FloatArray, within: FloatArray
 ) -> FloatArray:
     """Return the logarithm of the restricted likelihood of each pair."""
-    found = np.empty(between.size)
     stack = covariances(rows.covariance, rows.assembly, between, within)
-    for k, covariance in enumerate(stack):
-        factor = np.linalg.cholesky(covariance)
-        white = cho_solve((factor, True), np.column_stack([columns, rows.value]))
-        normal = columns.T @ white[:, :-1]
-        right = columns.T @ white[:, -1]
-        root = np.linalg.cholesky(normal)
-        left = rows.value @ white[:, -1] - right @ cho_solve((root, True), right)
-        logs = np.log(np.diag(factor)).sum() + np.log(np.diag(root)).sum()
-        found[k] = -0.5 * left - logs
-    return found
+    white = np.linalg.solve(stack, np.column_stack([columns, rows.value]))
+    normal = columns.T @ white[..., :-1]
+    right = white[..., -1] @ columns
+    fitted = np.linalg.solve(normal, right[..., None])[..., 0]
+    left = white[..., -1] @ rows.value - (right * fitted).sum(axis=1)
+    return np.asarray(-0.5 * left - _half_log(stack) - _half_log(normal))
+
+
+def _half_log(stack: FloatArray) -> FloatArray:
+    """Return half the logarithm of each determinant, shape (n_pairs,)."""
+    roots = np.diagonal(np.linalg.cholesky(stack), axis1=1, axis2=2)
+    return np.asarray(np.log(roots).sum(axis=1))

@@ -4,7 +4,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
@@ -67,26 +66,22 @@ def expected_values(
     size = rows.value.size
     errors = np.zeros((ids.size, ids.size))
     errors[:size, :size], errors[size:, size:] = rows.covariance, measured
-    mean = np.empty((known.weight.size, level.size))
-    covariance = np.empty((known.weight.size, level.size, level.size))
     stack = covariances(errors, ids, known.between, known.within)
-    for k, whole in enumerate(stack):
-        factor = cho_factor(whole[:size, :size], lower=True)
-        cross = whole[size:, :size]
-        white = cho_solve(factor, np.column_stack([old, rows.value, cross.T]))
-        columns = known.degree + 1
-        normal = cho_factor(old.T @ white[:, :columns], lower=True)
-        fitted = cho_solve(normal, old.T @ white[:, columns])
-        rest = new - cross @ white[:, :columns]
-        mean[k] = new @ fitted + cross @ (
-            white[:, columns] - white[:, :columns] @ fitted
-        )
-        covariance[k] = (
-            whole[size:, size:]
-            - cross @ white[:, columns + 1 :]
-            + rest @ cho_solve(normal, rest.T)
-        )
-    return Expected(known.weight, mean, covariance)
+    cross, pairs = stack[:, size:, :size], len(stack)
+    columns = np.column_stack([old, rows.value])
+    same = np.broadcast_to(columns, (pairs, *columns.shape))
+    turned = cross.transpose(0, 2, 1)
+    white = np.linalg.solve(
+        stack[:, :size, :size], np.concatenate([same, turned], axis=2)
+    )
+    trended, value, further = np.split(white, [old.shape[1], old.shape[1] + 1], axis=2)
+    normal = old.T @ trended
+    fitted = np.linalg.solve(normal, old.T @ value)
+    mean = new @ fitted + cross @ (value - trended @ fitted)
+    rest = new - cross @ trended
+    covariance = stack[:, size:, size:] - cross @ further
+    covariance += rest @ np.linalg.solve(normal, rest.transpose(0, 2, 1))
+    return Expected(known.weight, mean[..., 0], covariance)
 
 
 def quantiles(found: Expected, probability: tuple[float, ...]) -> FloatArray:

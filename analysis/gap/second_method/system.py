@@ -90,8 +90,9 @@ class System:
         for law, ends in zip(self.laws, self.ends, strict=True):
             r, speed, own = x @ ends, v @ ends, state[..., at : at + law.states]
             acceleration -= law.force(r, speed, own)[..., None] * ends / self.mass
-            parts.append(law.rate(r, speed, own))
-            at += law.states
+            if law.states:
+                parts.append(law.rate(r, speed, own))
+                at += law.states
         return np.concatenate(parts, axis=-1)
 
 

@@ -63,7 +63,7 @@ def gauge(noise: dict[int, Noise]) -> tuple[mark10.Reading, int]:
     """Return a reading of 4.285 N m through noise, and how often it was asked."""
     noisy = Noisy(Mark10Simulator().answer, noise)
     with SerialSimulator(noisy, over_socket=True) as device:
-        line = SerialLine(device.name, baud=9600, timeout=0.3)
+        line = SerialLine(device.name, baud=9600, timeout=0.6)
         try:
             return mark10.read_gauge(line), noisy.turn
         finally:
@@ -74,7 +74,7 @@ def dh8(noise: dict[int, Noise], points: int = 50) -> np.ndarray:
     """Return the counts of a DH-8's profile through noise."""
     noisy = Noisy(DiaviteSimulator(wave_counts(points)).answer, noise)
     with SerialSimulator(noisy, over_socket=True) as device:
-        line = SerialLine(device.name, baud=9600, timeout=0.3)
+        line = SerialLine(device.name, baud=9600, timeout=0.6)
         try:
             profile = diavite.read_profile(line, name="f", traverse=4.8e-3)
         finally:
@@ -86,7 +86,7 @@ def surftest(noise: dict[int, Noise]) -> np.ndarray:
     """Return three heights [um] of a Surftest, two a file, through noise."""
     noisy = Noisy(MitutoyoSimulator((1.5, -0.25, 0.125), per_file=2).answer, noise)
     with SerialSimulator(noisy, over_socket=True) as device:
-        line = SerialLine(device.name, baud=9600, timeout=0.3)
+        line = SerialLine(device.name, baud=9600, timeout=0.6)
         try:
             profile = mitutoyo.read_profile(line, name="f")
         finally:
@@ -141,7 +141,7 @@ def test_what_came_before_the_request_answers_nothing() -> None:
         return len(received), f"{next(shown)} Nm\r\n0.500 Nm\r\n\x81".encode("latin-1")
 
     with SerialSimulator(answer, over_socket=True) as device:
-        line = SerialLine(device.name, baud=9600, timeout=0.3)
+        line = SerialLine(device.name, baud=9600, timeout=0.6)
         found = []
         for _ in range(3):
             found.append(mark10.read_gauge(line).value)
@@ -214,7 +214,7 @@ def test_a_text_of_the_dh8_with_a_junk_byte_is_asked_for_again(junk: bytes) -> N
     """Its unit, with a byte that is no character."""
     noisy = Noisy(DiaviteSimulator((1,)).answer, {0: put(junk, 2)})
     with SerialSimulator(noisy, over_socket=True) as device:
-        line = SerialLine(device.name, baud=9600, timeout=0.3)
+        line = SerialLine(device.name, baud=9600, timeout=0.6)
         assert diavite.ask_text(line, "unit") == "um"
         line.close()
 
@@ -223,7 +223,7 @@ def test_a_measurement_is_started_once_whatever_the_answer() -> None:
     """A second start would trace again."""
     noisy = Noisy(DiaviteSimulator((1,)).answer, {0: put(b"\x81", 1)})
     with SerialSimulator(noisy, over_socket=True) as device:
-        line = SerialLine(device.name, baud=9600, timeout=0.3)
+        line = SerialLine(device.name, baud=9600, timeout=0.6)
         with pytest.raises(Unreadable):
             diavite.ask_text(line, "start")
         line.close()

@@ -48,7 +48,11 @@ def serve_another_client(server: SimulatedChassis) -> float:
 def test_waiting_calls_tasks_and_garbage_leave_room_for_another_client(
     server: SimulatedChassis,
 ) -> None:
-    """Event streams and endless waits up to the limit, tasks up to the limit."""
+    """Event streams and endless waits up to the limit, tasks up to the limit.
+
+    Without room the client would wait without limit; a busy machine serves all slowly.
+    """
+    undisturbed = serve_another_client(server)
     own = (("grpc.use_local_subchannel_pool", 1),)
     with (
         socket.create_connection(("127.0.0.1", server.port)) as rubbish,
@@ -69,7 +73,7 @@ def test_waiting_calls_tasks_and_garbage_leave_room_for_another_client(
             for n in range(30):
                 task._interpreter.create_task(f"t{n}")  # noqa: SLF001
         assert refused.value.error_code == DAQmxErrors.PAL_MEMORY_FULL
-        assert serve_another_client(server) < 1.0
+        assert serve_another_client(server) < 1.0 + 10.0 * undisturbed
         refusals = [call for call in calls if call.done()]
         assert len(refusals) >= 9
         assert all(
@@ -93,7 +97,7 @@ def test_a_client_that_dies_frees_its_workers(server: SimulatedChassis) -> None:
         task._handle = None  # dead: it never clears its task  # noqa: SLF001
         channel.close()
     waiters = server._service.waiters  # type: ignore[union-attr]  # noqa: SLF001
-    until = time.monotonic() + 5.0
+    until = time.monotonic() + 60.0
     while waiters._counts.total() and time.monotonic() < until:  # noqa: SLF001
         time.sleep(0.02)
     assert waiters._counts.total() == 0  # noqa: SLF001

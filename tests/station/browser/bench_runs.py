@@ -158,7 +158,7 @@ def legible(page: "Page") -> None:
             page.set_viewport_size({"width": width, "height": 900})
             # Plots follow the window a moment later.
             with suppress(Exception):
-                page.wait_for_function(f"() => !({ILLEGIBLE})().length", timeout=9000)
+                page.wait_for_function(f"() => !({ILLEGIBLE})().length", timeout=SOON)
             assert page.evaluate(ILLEGIBLE) == [], (page.url, scheme, width)
     page.emulate_media(color_scheme="light")
     if usual is not None:

@@ -102,7 +102,7 @@ def test_from_the_first_hit_to_the_report_by_keys(
             poles_by_keys(page)
             shapes_and_gap(page, tmp_path, running)
             reported(page, tmp_path)
-        assert running.process.wait(120) == 0
+        assert running.process.wait(300) == 0
     content = json.loads((tmp_path / "s.json").read_text())
     counts = content["verdicts"]
     assert counts["overload"] == counts["double"] == 1
@@ -233,7 +233,7 @@ def test_a_browser_that_is_killed_loses_no_hit(
         with opened(chromium, running.link()) as again:
             again.locator("#task", has_text="END").wait_for()
             shown = again.locator(".counts").inner_text()
-        assert running.process.wait(120) == 0
+        assert running.process.wait(300) == 0
     content = json.loads((tmp_path / "s.json").read_text())
     assert content["verdicts"]["ok"] == 12
     assert content["lost_samples"] == 0

@@ -28,7 +28,7 @@ def ask(
     screen: Served, method: str, path: str, headers: Mapping[str, str] | None = None
 ) -> http.client.HTTPResponse:
     """Send one request; the answer is read whole."""
-    link = http.client.HTTPConnection("127.0.0.1", screen.access.port, timeout=10)
+    link = http.client.HTTPConnection("127.0.0.1", screen.access.port, timeout=60)
     try:
         link.request(method, path, headers=dict(headers or {}))
         answer = link.getresponse()

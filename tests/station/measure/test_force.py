@@ -126,7 +126,7 @@ def test_a_session_that_was_stopped_leaves_the_earlier_one_and_lies_beside_it(
                 assert is_held(earlier)
                 process.send_signal(signal.SIGTERM)
                 break
-        said, _ = process.communicate(timeout=60)
+        said, _ = process.communicate(timeout=300)
     assert process.returncode == 5
     assert "stays as it was" in said
     assert earlier.read_bytes() == before

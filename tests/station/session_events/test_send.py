@@ -59,7 +59,7 @@ def test_a_recording_answers_another_process(tmp_path: Path) -> None:
             assert run_send(out, "note chips", json_target=str(said))
             assert not run_send(out, "go 4", json_target=None)
             assert run_send(out, "quit yes", json_target=None)
-            assert recording.wait(120) == 5
+            assert recording.wait(300) == 5
         finally:
             recording.kill()
     answer = json.loads(said.read_text(encoding="utf-8"))
@@ -102,7 +102,7 @@ def test_a_measurement_answers_another_process(tmp_path: Path) -> None:
             assert not asked("go 77")
             assert not asked("quit")
             assert asked("quit yes")
-            assert measuring.wait(120) == 5
+            assert measuring.wait(300) == 5
         finally:
             measuring.kill()
     log = read_log(out)[0]

@@ -61,7 +61,7 @@ def stored(path: Path) -> int:
 
 def wait_for(path: Path, samples: int) -> int:
     """Wait until so many samples are in a file, and return how many there are."""
-    until = time.monotonic() + 60.0
+    until = time.monotonic() + 300.0
     while (count := stored(path)) < samples and time.monotonic() < until:
         time.sleep(0.05)
     return count
@@ -139,7 +139,7 @@ def test_a_recording_that_is_killed_can_be_recovered_with_its_hits(
     with start(LONG, "--out", str(path)) as process:
         seen = wait_for(path, 90_000)
         process.kill()
-        process.communicate(timeout=60)
+        process.communicate(timeout=300)
     assert not run_verify(path, json_target=None)
     recovered = read_session(
         run_recover(path, out=None, overwrite=False, json_target=None)
@@ -163,7 +163,7 @@ def test_a_recording_that_is_stopped_is_finished(tmp_path: Path, name: str) -> N
     with start(LONG, "--out", str(path), "--json", str(said)) as process:
         wait_for(path, 40_000)
         process.send_signal(getattr(signal, name))
-        process.communicate(timeout=60)
+        process.communicate(timeout=300)
     assert process.returncode == 5
     assert run_verify(path, json_target=None)
     assert read_session(path).recordings[0].hits
