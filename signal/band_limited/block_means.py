@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import cholesky, qr, solve_triangular, toeplitz
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze, read_only
+from jointbench.signal.band_limited.toeplitz_likelihood import toeplitz_log_likelihood
 
 _CELLS = 400
 """Cells of the integral over wavenumbers, equal in ln q [-]."""
@@ -47,24 +47,18 @@ class BlockMeans:
         Args:
             density: of the sampled heights at `wavenumbers` of these blocks.
 
+        Raises:
+            LinAlgError: the covariance is not positive.
+
         Source:
             Restricted likelihood: Harville, Biometrika 61 (1974) 383; a polynomial of
             any size leaves it unchanged.
         """
         _, kernel = kernel_of(self.means.shape[0], self.size)
-        factor = cholesky(toeplitz(kernel @ density), lower=True, check_finite=False)
-        both = solve_triangular(
-            factor,
-            np.hstack([self.trend, self.means]),
-            lower=True,
-            check_finite=False,
-        )
-        terms = self.trend.shape[1]
-        basis, scale = qr(both[:, :terms], mode="economic", check_finite=False)
-        data = both[:, terms:]
-        squares = float(np.sum(data**2) - np.sum((basis.T @ data) ** 2))
-        logs = np.log(np.diag(factor)).sum() + np.log(np.abs(np.diag(scale))).sum()
-        return float(-0.5 * squares - data.shape[1] * logs)
+        total = toeplitz_log_likelihood(kernel @ density, self.trend, self.means)
+        if np.isnan(total):
+            raise np.linalg.LinAlgError("the covariance of the means is not positive")
+        return float(total)
 
 
 def block_means(lines: FloatArray, count: int, degree: int) -> BlockMeans:
