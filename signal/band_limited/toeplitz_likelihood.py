@@ -66,4 +66,4 @@ def toeplitz_log_likelihood(
         rest[k] /= size
         for i in range(k + 1, terms + columns):
             rest[i] -= np.sum(rest[k] * rest[i]) * rest[k]
-    return -0.5 * np.sum(rest[terms:] ** 2) - logs
+    return float(-0.5 * np.sum(rest[terms:] ** 2) - logs)
