@@ -199,3 +199,24 @@ def test_a_netcdf_map_of_the_public_library_is_read_with_its_gaps(tmp_path):
 @pytest.mark.parametrize("ending", "tmd bcrf di ibw nid stp top mi nc".split())
 def test_endings_of_makers_are_theirs(ending):
     assert is_vendor_name(Path(f"map.{ending}"))
+
+
+@pytest.mark.parametrize(
+    ("head", "columns"), [("", "x:um,z:um,valid"), ("x [um],z [um],valid\n", None)]
+)
+def test_a_column_of_validity_is_a_mask(tmp_path, head, columns):
+    """A height of a point that is not there is no height, whatever it reads."""
+    rows = [
+        f"{k},{1e6 if k == 7 else 0.1 * (k % 3):.1f},{int(k != 7)}" for k in range(20)
+    ]
+    file = written(tmp_path / "a.csv", head + "\n".join(rows) + "\n")
+    found = read_surface(file, columns=columns)
+    assert np.flatnonzero(~found.valid).tolist() == [7]
+    assert found.heights.max() == pytest.approx(2e-7)
+
+
+def test_a_column_of_validity_holds_nothing_but_0_and_1(tmp_path):
+    rows = [f"{k},{0.1 * (k % 3):.1f},{k}" for k in range(20)]
+    file = written(tmp_path / "a.csv", "\n".join(rows) + "\n")
+    with pytest.raises(FormatError, match="neither 0 nor 1"):
+        read_surface(file, columns="x:um,z:um,valid")
