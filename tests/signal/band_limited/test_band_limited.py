@@ -16,12 +16,15 @@ from jointbench.acquisition.records.surfaces import (
 )
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import RollOffVerdict
-from jointbench.signal.band_limited.block_means import block_means, kernel_of
+from jointbench.signal.band_limited.block_means import (
+    block_means,
+    kernel_of,
+    toeplitz_log_likelihood,
+)
 from jointbench.signal.band_limited.known_transfer import KnownTransfer
 from jointbench.signal.band_limited.line_sample import line_sample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
-from jointbench.signal.band_limited.toeplitz_likelihood import toeplitz_log_likelihood
 from jointbench.signal.surface.gaussian_filter import filter_waves
 from jointbench.signal.surface.line_spectrum import line_spectrum
 from jointbench.simulators.rough_surfaces.brownian import brownian_lines
