@@ -194,7 +194,7 @@ def _flagged(table: Table, index: int | None) -> BoolArray:
         raise FormatError(
             f"{named(table.path)}: {table.where(int(other[0]))}: column {index + 1} "
             f"('{VALID}') holds {flags[other[0]]:g}, which is neither 0 nor 1; write "
-            "'-' for it in --columns if it does not tell which heights are there"
+            "'-' for it in --columns if it is no mask of heights"
         )
     return np.asarray(flags == 0)
 
