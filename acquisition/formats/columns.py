@@ -10,6 +10,7 @@ The grammar, one item a column, joined by commas::
     x:mm,y:mm,z:um!-25400       heights where -25400 means "no point here"
     time:s,-,force:N            a column that is not wanted
     z:um@0.5um                  heights alone, 0.5 um apart
+    x:um,z:um,valid             0 in the last column where the height is none, else 1
     force:-N                    numbers that count the other way round
 """
 
@@ -29,6 +30,7 @@ from jointbench.acquisition.basics.units import (
 from jointbench.acquisition.records.recordings import Quantity
 
 SKIP = "skip"
+VALID = "valid"
 HITS_EXAMPLE = "time:s,force:N,acceleration:m/s^2"
 SURFACE_EXAMPLES = ("x:um,z:um", "x:mm,y:mm,z:um")
 _KINDS = {"time": "time", "x": "length", "y": "length", "z": "length"} | {
@@ -51,8 +53,9 @@ class Column:
     """One column of a plain table.
 
     Attributes:
-        role: ``"time"``, a `Quantity`, ``"x"``, ``"y"``, ``"z"`` or ``"skip"``.
-        unit: as typed, known to fit the role; empty for a skipped column.
+        role: ``"time"``, a `Quantity`, ``"x"``, ``"y"``, ``"z"``, ``"valid"`` or
+            ``"skip"``.
+        unit: as typed, known to fit the role; empty for the last two.
         label: name of the channel; empty if not given.
         point: where the sensor sits; empty if not given.
         sensitivity: [V per SI unit] where the unit is a voltage, else None.
@@ -73,7 +76,7 @@ class Column:
     @property
     def factor(self) -> float:
         """Factor from the numbers of the column to SI."""
-        if self.role == SKIP:
+        if self.role in (SKIP, VALID):
             return 1.0
         if self.sensitivity is not None:
             return self.sign * to_si(self.unit, "voltage") / self.sensitivity
@@ -95,7 +98,7 @@ def parse_columns(spec: str) -> tuple[Column, ...]:
             without the sensitivity of the sensor.
     """
     columns = tuple(_parse_item(item.strip()) for item in spec.split(","))
-    for role in ("time", "x", "y", "z"):
+    for role in ("time", "x", "y", "z", VALID):
         if sum(column.role == role for column in columns) > 1:
             raise UsageError(
                 f"--columns {spec!r} names {role!r} more than once; write '-' for "
@@ -117,6 +120,8 @@ def only_roles(columns: Sequence[Column], allowed: Sequence[str], what: str) -> 
 def _parse_item(item: str) -> Column:
     if item in ("-", "_", SKIP):
         return Column(SKIP, "")
+    if item == VALID:
+        return Column(VALID, "")
     match = _ITEM.fullmatch(item)
     role = match["role"].strip() if match else item
     if match is None or role not in _KINDS:

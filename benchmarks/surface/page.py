@@ -13,6 +13,8 @@ PRECISION = "python -m benchmarks.surface.precision"
 HEADINGS = {
     "clean": "Precision of D on clean exact profiles of 20,000 points: "
     f"`{PRECISION} --seeds N --first N --dimension D`",
+    "efficiency": "D at 1.7 with less chance: "
+    "`python -m benchmarks.surface.efficiency --count 200 --seed N --log PATH`",
     "noise": f"With noise of one step: `{PRECISION} --setting noise`",
     "little": f'With noise of 0.3 steps: `{PRECISION} --setting "little noise"`',
     "psf": f'With a point spread of 4 samples: `{PRECISION} --setting "point spread"`',
@@ -33,7 +35,8 @@ HEADINGS = {
     "figure9": "The 2023 paper's Fig. 9: `python -m benchmarks.surface.figure_9`",
     "speed": "Time, memory and precision compared with other programs: "
     "`python -m benchmarks.surface.speed`",
-    "hostile": "Mutated files: `python -m benchmarks.surface.hostile --files 2000`",
+    "hostile": "Mutated files: "
+    "`python -m benchmarks.surface.hostile --files 2000 --seed N`",
 }
 
 

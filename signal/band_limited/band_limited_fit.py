@@ -293,13 +293,10 @@ def _whole_height(
     likelihood: SpectralLikelihood, draws: WeightedDraws, best: FloatArray
 ) -> Interval95:
     """Return the root mean square of all waves [m]."""
-
-    def height(parameters: FloatArray) -> float:
-        total = spectral_moments(likelihood.model(parameters), 0.0, np.pi)[0]
-        return likelihood.sample.scale * float(np.sqrt(total))
-
-    values = np.array([height(one) for one in draws.parameters])
-    return draws.estimate(values, height(best))
+    models = [likelihood.model(one) for one in (best, *draws.parameters)]
+    total = spectral_moments(models, 0.0, np.pi)[:, 0]
+    value, *drawn = likelihood.sample.scale * np.sqrt(total)
+    return draws.estimate(np.array(drawn), float(value))
 
 
 def _tip(found: _Found) -> float:

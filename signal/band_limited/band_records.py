@@ -178,3 +178,12 @@ class BandLimitedFit:
     mapped: bool = False
     lay: SurfaceLay | None = None
     map_model: LaySpectrum | None = None
+
+    @property
+    def roll_off_likeliest(self) -> float | None:
+        """The most likely roll-off, whether or not the trace shows one [m].
+
+        It is far beyond the line where none is likelier; None without a self-affine
+        band.
+        """
+        return None if self.model is None else self.model.roll_off * self.pitch

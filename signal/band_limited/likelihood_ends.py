@@ -43,7 +43,7 @@ class _OfHeight(SpectralLikelihood):
     def model(self, parameters: FloatArray) -> BandLimited:
         """Return the surface of given parameters."""
         bare = SpectralLikelihood.model(self, np.concatenate([[0.0], parameters[1:]]))
-        total = float(spectral_moments(bare, *self.ends)[0])
+        total = float(spectral_moments([bare], *self.ends)[0, 0])
         return replace(bare, level=float(np.exp(parameters[0])) / total)
 
 
@@ -71,7 +71,7 @@ def height_ends(
     ends = (2 * np.pi / waves[1], 2 * np.pi / waves[0])
     model = likelihood.model(top.parameters)
     start = top.parameters.copy()
-    start[_LEVEL] = np.log(spectral_moments(model, *ends)[0])
+    start[_LEVEL] = np.log(spectral_moments([model], *ends)[0, 0])
     other = _OfHeight(
         likelihood.sample, likelihood.tolerance, likelihood.heeds_tip, ends
     )

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Root mean squares of height, slope and curvature between two wavelengths."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -23,22 +25,33 @@ _CUT_HALF = 2 * np.pi / np.sqrt(2 * np.log(2))
 """Wavelength at which a Gaussian blur transmits half the amplitude, over its width."""
 
 
-def spectral_moments(model: BandLimited, low: float, high: float) -> FloatArray:
+def spectral_moments(
+    models: Sequence[BandLimited], low: float, high: float
+) -> FloatArray:
     """Return the integrals of q^0, q^2 and q^4 times the two-sided density.
 
     Args:
-        model: the surface.
+        models: surfaces.
         low: wavenumber [rad/sample]; 0 for all long waves.
         high: wavenumber [rad/sample].
+
+    Returns:
+        The integrals of each surface, shape (n_models, 3).
     """
-    corner = 2 * np.pi / model.roll_off
-    start = low if low > 0 else 1e-3 * min(corner, high)
-    edge = np.geomspace(start, high, _NODES)
+    level, pivot, power, corner = np.array(
+        [
+            (one.level, one.pivot, one.hurst + 0.5, 2 * np.pi / one.roll_off)
+            for one in models
+        ]
+    ).T[:, :, None]
+    start = np.full_like(corner, low) if low > 0 else 1e-3 * np.minimum(corner, high)
+    edge = np.exp(np.log(start) + np.log(high / start) * np.linspace(0, 1, _NODES))
     if low == 0:
-        edge = np.concatenate([[0.0], edge])
-    middle = 0.5 * (edge[1:] + edge[:-1])
-    part = 2 * model.surface(middle) * np.diff(edge)
-    return np.array([np.sum(part * middle**k) for k in (0, 2, 4)])
+        edge = np.hstack([np.zeros_like(start), edge])
+    middle = np.square(0.5 * (edge[:, 1:] + edge[:, :-1]))
+    ratio = (corner**2 + pivot**2) / (corner**2 + middle)
+    part = 2 * level * ratio**power * np.diff(edge)
+    return np.array([(part * middle**k).sum(axis=1) for k in (0, 1, 2)]).T
 
 
 def cut_wavelength(blur: FloatArray) -> FloatArray:
@@ -83,10 +96,8 @@ def modelled_moments(
     if not long > 2 * short:
         return None
     ends = (2 * np.pi / long, 2 * np.pi / short)
-    at_best = spectral_moments(model, *ends)
-    values = np.array(
-        [spectral_moments(likelihood.model(x), *ends) for x in draws.parameters]
-    )
+    at_best = spectral_moments([model], *ends)[0]
+    values = spectral_moments([likelihood.model(x) for x in draws.parameters], *ends)
     parts = [
         draws.estimate(np.sqrt(values[:, k]), float(np.sqrt(at_best[k])))
         for k in range(3)

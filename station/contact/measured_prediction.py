@@ -19,7 +19,6 @@ from jointbench.analysis.contact.spectral.height_distribution import (
 from jointbench.analysis.contact.spectral.isotropic_spectrum import (
     combined,
     doubled,
-    isotropic_spectrum,
 )
 from jointbench.analysis.contact.spectral.measured_laws import (
     LawCurve,
@@ -30,6 +29,7 @@ from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.signal.band_limited.band_limited_fit import fit_lines
 from jointbench.signal.band_limited.band_records import BandLimitedFit
+from jointbench.station.contact.surface_spectrum import surface_spectrum
 
 CURVE_POINTS = 25
 _BELOW, _ABOVE = 100.0, 10.0
@@ -139,7 +139,8 @@ def measured_case(
         fits: their band-limited surfaces.
         joint: area and materials.
     """
-    spectra = [isotropic_spectrum(fit) for fit in fits]
+    pairs = [surface_spectrum(*one) for one in zip(surfaces, fits, strict=True)]
+    spectra = [spectrum for spectrum, _ in pairs]
     facts = [
         height_facts(surface, float(one.mean_wave()[0]))
         for surface, one in zip(surfaces, spectra, strict=True)
@@ -154,6 +155,7 @@ def measured_case(
         hardness=material.hardness,
         modulus_sd=joint.conditions.modulus_sd,
         hardness_sd=joint.conditions.hardness_sd,
+        lay=max(ratio for _, ratio in pairs),
     )
 
 

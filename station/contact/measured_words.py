@@ -8,6 +8,7 @@ import numpy as np
 from jointbench.analysis.contact.spectral.measured_laws import LawCurve
 from jointbench.signal.band_limited.band_records import RollOffVerdict
 from jointbench.station.contact.measured_prediction import MeasuredPrediction
+from jointbench.station.contact.surface_spectrum import LAY
 from jointbench.station.screen.band_limited_words import band_json
 from jointbench.station.screen.value_text import engineering
 
@@ -84,6 +85,12 @@ def _cautions(found: MeasuredPrediction) -> Iterator[str]:
         yield (
             "a profile does not show a lay: the laws take it as equal in all "
             "directions; measure a map to test it"
+        )
+    if found.case.lay >= LAY:
+        yield (
+            f"a lay: slopes along rows and columns differ by a factor of "
+            f"{found.case.lay:.2g}; the laws take the mean of both spectra and were "
+            "judged on surfaces without a lay"
         )
     open_ended = [
         name

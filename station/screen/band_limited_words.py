@@ -57,9 +57,13 @@ def _shape_rows(fit: BandLimitedFit) -> list[tuple[str, str, str]]:
 def _roll_off_rows(fit: BandLimitedFit) -> list[tuple[str, str, str]]:
     if fit.roll_off is not None:
         return [("roll-off", *_metres(fit.roll_off))]
-    if fit.roll_off_beyond is not None:
-        return [("roll-off", "-", f"beyond {engineering(fit.roll_off_beyond, 'm')}")]
-    return []
+    if fit.roll_off_beyond is None:
+        return []
+    ends = f"beyond {engineering(fit.roll_off_beyond, 'm')}"
+    likeliest = fit.roll_off_likeliest
+    if fit.verdict is not RollOffVerdict.UNDECIDED or likeliest is None:
+        return [("roll-off", "-", ends)]
+    return [("roll-off, not decided", engineering(likeliest, "m"), ends)]
 
 
 def band_lines(fit: BandLimitedFit | None, reason: str | None) -> tuple[str, ...]:
@@ -115,6 +119,7 @@ def band_json(fit: BandLimitedFit | None, reason: str | None) -> dict[str, objec
         "hurst": _ends(fit.hurst),
         "roll_off_m": _ends(fit.roll_off),
         "roll_off_beyond_m": fit.roll_off_beyond,
+        "roll_off_likeliest_m": fit.roll_off_likeliest,
         "height_rms_m": _ends(fit.height),
         "short_cut_m": _ends(fit.short_cut),
         "tip_deviation": fit.tip_deviation,

@@ -17,6 +17,7 @@ from jointbench.acquisition.basics.units import is_unit
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import (
     SURFACE_EXAMPLES,
+    VALID,
     Column,
     only_roles,
     parse_columns,
@@ -32,6 +33,7 @@ from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 _LEAST_FILLED = 0.5
 _AREAL_COLUMNS = 3
 _COUNTERS = frozenset({"index", "no", "no.", "#", "n", "i"})
+_FLAGS = frozenset({"valid", "validity", "is valid"})
 _HEADER_CELL = re.compile(
     r"(?P<axis>[xyz])\s*(?:in\s+|[\[(/_]+\s*)(?P<unit>[^\])]+?)\s*[\])]?", re.I
 )
@@ -50,7 +52,7 @@ def surface_columns(spec: str) -> tuple[Column, ...]:
         UnitError: a unit is missing or is no length.
     """
     columns = parse_columns(spec)
-    only_roles(columns, ("x", "y", "z"), "a table of heights")
+    only_roles(columns, ("x", "y", "z", VALID), "a table of heights")
     spaced = any(column.spacing is not None for column in columns)
     roles = {column.role for column in columns}
     for role in ("x", "z"):
@@ -87,12 +89,15 @@ def header_columns(table: Table) -> tuple[Column, ...] | None:
         if cell.lower() in _COUNTERS:
             columns.append(Column("skip", ""))
             continue
+        if cell.lower() in _FLAGS:
+            columns.append(Column(VALID, ""))
+            continue
         if match is None or not is_unit(match["unit"].strip(), "length"):
             return None
         axis = match["axis"].lower()
         role = "z" if axis == "y" and axes == ["x", "y"] else axis
         columns.append(Column(role, match["unit"].strip()))
-    roles = [column.role for column in columns if column.role != "skip"]
+    roles = [one.role for one in columns if one.role not in ("skip", VALID)]
     return tuple(columns) if sorted(roles) in (["x", "z"], ["x", "y", "z"]) else None
 
 
@@ -133,7 +138,8 @@ def surface_from_table(
     place = {column.role: i for i, column in enumerate(columns)}
     for role in {"x", "y"} & place.keys():
         table.require_sane(place[role], columns[place[role]].factor, role)
-    heights, valid = _heights(table, place["z"], columns[place["z"]])
+    absent = _flagged(table, place.get(VALID))
+    heights, valid = _heights(table, place["z"], columns[place["z"]], absent)
     provenance = (origin, _describe(table, columns, valid))
     if "x" not in place:
         return Profile(
@@ -174,14 +180,35 @@ def _describe(table: Table, columns: Sequence[Column], valid: BoolArray) -> Step
     )
 
 
-def _heights(table: Table, index: int, column: Column) -> tuple[FloatArray, BoolArray]:
+def _flagged(table: Table, index: int | None) -> BoolArray:
+    """Mark the points that a column of 0 and 1 calls no height.
+
+    Raises:
+        FormatError: it holds other numbers.
+    """
+    if index is None:
+        return np.zeros(table.values.shape[1], dtype=np.bool_)
+    flags = table.values[index]
+    other = np.flatnonzero((flags != 0) & (flags != 1))
+    if other.size:
+        raise FormatError(
+            f"{named(table.path)}: {table.where(int(other[0]))}: column {index + 1} "
+            f"('{VALID}') holds {flags[other[0]]:g}, which is neither 0 nor 1; write "
+            "'-' for it in --columns if it is no mask of heights"
+        )
+    return np.asarray(flags == 0)
+
+
+def _heights(
+    table: Table, index: int, column: Column, absent: BoolArray
+) -> tuple[FloatArray, BoolArray]:
     """Return heights [m], 0 where missing, and the mask of those that are there."""
     values = table.values[index]
-    missing = np.isnan(values)
+    missing = np.isnan(values) | absent
     if column.code is not None:
         missing |= values == column.code
     else:
-        missing |= _known_codes(values)
+        missing |= _known_codes(np.where(absent, np.nan, values))
         _refuse_unsaid_code(table, values[~missing], column)
     infinite = np.flatnonzero(np.isinf(values) & ~missing)
     if infinite.size:

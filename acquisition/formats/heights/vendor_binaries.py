@@ -37,7 +37,8 @@ _NEEDED = 40
 """Of each point: as it is stored, masked, scaled and turned [bytes]."""
 SUFFIXES = frozenset(
     ".vk3 .vk4 .vk6 .vk7 .zon .zag .plu .plux .sur .pro .opd .opdx .x3p .sdf .al3d"
-    " .dat .datx .nms .nmm .mnt .os3d .lext .oir .poir .frt .gwy .xlsx".split()
+    " .dat .datx .nms .nmm .mnt .os3d .lext .oir .poir .frt .gwy .xlsx .tmd .bcr .bcrf"
+    " .di .spm .ibw .nid .ezd .stp .top .mi .nc".split()
 )
 
 
@@ -148,7 +149,10 @@ def open_vendor(path: Path) -> tuple[Any, str]:
         try:
             reader = SurfaceTopography.IO.open_topography(str(path))
             _require_sane_grid(reader, path)
-            return reader.topography(), type(reader).__name__.removesuffix("Reader")
+            name = type(reader).__name__.removesuffix("Reader")
+            found = reader.topography()
+            # One that maps a file warns when it closes while its heights are in use.
+            del reader
         except HostileFile:
             raise
         except Exception as error:
@@ -157,6 +161,7 @@ def open_vendor(path: Path) -> tuple[Any, str]:
                 f"({shown(str(error).strip() or type(error).__name__)}); export it as "
                 "text or X3P"
             ) from error
+    return found, name
 
 
 def _require_sane_grid(reader: Any, path: Path) -> None:

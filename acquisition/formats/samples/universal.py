@@ -29,7 +29,7 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import read_bytes
-from jointbench.acquisition.formats.columns import SKIP, parse_columns
+from jointbench.acquisition.formats.columns import SKIP, only_roles, parse_columns
 from jointbench.acquisition.formats.even_steps import roundest
 from jointbench.acquisition.formats.samples.repeated_channels import hits_of_channels
 from jointbench.acquisition.formats.samples.sample_format import (
@@ -42,6 +42,7 @@ from jointbench.acquisition.formats.samples.universal_repairs import (
 )
 from jointbench.acquisition.formats.samples.universal_units import unit_of_system
 from jointbench.acquisition.formats.stated_channels import (
+    QUANTITIES,
     StatedChannel,
     quantity_of_unit,
     recording_of,
@@ -125,6 +126,7 @@ def _hits(
     """Return the histories of each hit; `columns` may state what each is."""
     if columns is not None and any(one.quantity is None for one in channels):
         wanted = parse_columns(columns)
+        only_roles(wanted, QUANTITIES, "a recording whose file states the time")
         if len(channels) % len(wanted) == 0 and not any(c.label for c in wanted):
             given = [wanted[i % len(wanted)] for i in range(len(channels))]
             channels = [

@@ -262,3 +262,9 @@ def doubled(one: IsotropicSpectrum) -> IsotropicSpectrum:
     Their spectrum is the same draw: the error of the estimate does not average out.
     """
     return replace(one, variance=2 * one.variance)
+
+
+def averaged(one: IsotropicSpectrum, other: IsotropicSpectrum) -> IsotropicSpectrum:
+    """Return the mean of two spectra of one surface, as of its rows and its columns."""
+    halves = [replace(part, variance=0.5 * part.variance) for part in (one, other)]
+    return combined(*halves)

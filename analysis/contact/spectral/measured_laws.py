@@ -56,6 +56,8 @@ class MeasuredCase:
         hardness: of the softer body [Pa].
         modulus_sd: standard deviation of E* [Pa].
         hardness_sd: standard deviation of the hardness [Pa].
+        lay: ratio of the slopes of a map along rows and columns [-], the larger one of
+            both surfaces; 1 for profiles.
     """
 
     surface: IsotropicSpectrum
@@ -65,6 +67,7 @@ class MeasuredCase:
     hardness: float
     modulus_sd: float = 0.0
     hardness_sd: float = 0.0
+    lay: float = 1.0
 
     def __post_init__(self) -> None:
         """Check that every number is possible for a joint."""

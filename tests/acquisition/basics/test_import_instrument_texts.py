@@ -12,6 +12,7 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.acquisition.formats.heights.vendor_binaries import is_vendor_name
 from jointbench.acquisition.records.surfaces import Profile
 
 SURFACES = Path(__file__).parents[4] / "shared" / "data" / "surfaces"
@@ -180,3 +181,42 @@ def test_heights_alone_are_a_profile_at_the_distance_given(tmp_path):
     assert surface.spacing == pytest.approx(0.5e-6)
     with pytest.raises(UsageError, match="leave one out"):
         read_surface(path, columns="x:um,z:um@0.5um")
+
+
+def test_a_netcdf_map_of_the_public_library_is_read_with_its_gaps(tmp_path):
+    """X counts first there, and a masked height is missing."""
+    library = pytest.importorskip("SurfaceTopography")
+    heights = np.ma.masked_greater(np.arange(12.0).reshape(3, 4) / 100, 0.105)
+    made = library.Topography(heights, (3.0, 4.0), unit="um")
+    made.to_netcdf(str(tmp_path / "map.nc"))
+    found = read_surface(tmp_path / "map.nc")
+    assert found.heights.shape == (4, 3)
+    assert found.heights[2, 1] == pytest.approx(6e-8)
+    assert found.valid.sum() == 11
+    assert not found.valid[3, 2]
+
+
+@pytest.mark.parametrize("ending", "tmd bcrf di ibw nid stp top mi nc".split())
+def test_endings_of_makers_are_theirs(ending):
+    assert is_vendor_name(Path(f"map.{ending}"))
+
+
+@pytest.mark.parametrize(
+    ("head", "columns"), [("", "x:um,z:um,valid"), ("x [um],z [um],valid\n", None)]
+)
+def test_a_column_of_validity_is_a_mask(tmp_path, head, columns):
+    """A height of a point that is not there is no height, whatever it reads."""
+    rows = [
+        f"{k},{1e6 if k == 7 else 0.1 * (k % 3):.1f},{int(k != 7)}" for k in range(20)
+    ]
+    file = written(tmp_path / "a.csv", head + "\n".join(rows) + "\n")
+    found = read_surface(file, columns=columns)
+    assert np.flatnonzero(~found.valid).tolist() == [7]
+    assert found.heights.max() == pytest.approx(2e-7)
+
+
+def test_a_column_of_validity_holds_nothing_but_0_and_1(tmp_path):
+    rows = [f"{k},{0.1 * (k % 3):.1f},{k}" for k in range(20)]
+    file = written(tmp_path / "a.csv", "\n".join(rows) + "\n")
+    with pytest.raises(FormatError, match="neither 0 nor 1"):
+        read_surface(file, columns="x:um,z:um,valid")

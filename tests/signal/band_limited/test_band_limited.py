@@ -16,7 +16,11 @@ from jointbench.acquisition.records.surfaces import (
 )
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import RollOffVerdict
-from jointbench.signal.band_limited.block_means import block_means, kernel_of
+from jointbench.signal.band_limited.block_means import (
+    block_means,
+    kernel_of,
+    toeplitz_log_likelihood,
+)
 from jointbench.signal.band_limited.known_transfer import KnownTransfer
 from jointbench.signal.band_limited.line_sample import line_sample
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
@@ -208,3 +212,39 @@ def test_a_plane_is_refused(shape):
     with pytest.raises(UsageError, match="no roughness to fit"):
         fit_band_limited([flat])
     assert line_spectrum(flat) is not None
+
+
+def test_the_likelihood_of_even_spacing_is_that_of_a_factor_of_the_covariance():
+    """By LAPACK: whitened by the Cholesky factor, the trend taken out by QR."""
+    lag = np.arange(64.0)
+    covariance = np.exp(-lag / 20)
+    trend = np.polynomial.legendre.legvander(np.linspace(-1, 1, 64), 2)
+    data = np.random.default_rng(5).standard_normal((64, 3)).cumsum(axis=0)
+    factor = np.linalg.cholesky(covariance[np.abs(lag[:, None] - lag).astype(int)])
+    triangle = np.linalg.qr(np.linalg.solve(factor, np.hstack([trend, data])), "r")
+    logs = np.log(np.diag(factor)).sum() + np.log(abs(np.diag(triangle)[:3])).sum()
+    right = -0.5 * np.sum(triangle[3:, 3:] ** 2) - 3 * logs
+    found = toeplitz_log_likelihood(covariance, trend, data)
+    assert found == pytest.approx(right, rel=1e-10)
+
+
+def test_a_covariance_that_is_not_positive_has_no_likelihood():
+    """White heights less than nothing at the next distance."""
+    found = toeplitz_log_likelihood(
+        np.array([1.0, -0.8, 0.9, 1.2]), np.ones((4, 1)), np.ones((4, 1))
+    )
+    assert np.isnan(found)
+
+
+@pytest.mark.parametrize("blur", [0.0, 0.3, 4.0])
+def test_images_near_zero_are_those_of_their_sum(blur):
+    """Shifted by one whole turn the spectrum of samples is the same."""
+    model = BandLimited(1.0, 0.1, 0.4, 500.0, blur)
+    omega = np.geomspace(1e-4, 0.0999, 50)
+    shift = 2 * np.pi * np.arange(-3, 4)[:, None]
+    place = np.abs(omega + shift)
+    summed = (model.surface(place) * model.short_cut(place, tip=False)).sum(axis=0)
+    edge = np.array(7 * np.pi)
+    beyond = model.surface(edge) * model.short_cut(edge, tip=False) * 7 / 0.8
+    found = model.sampled(omega, KnownTransfer())
+    np.testing.assert_allclose(found, summed + beyond, rtol=1e-11)
