@@ -40,7 +40,7 @@ from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 SHORT = Resolution(STRUCTURE.base_windows[1])
 LONGER = Resolution(STRUCTURE.base_windows[2])
-_UNTESTED = Screening((), 0.0, 0.0)
+UNTESTED = Screening((), 0.0, 0.0)
 """No directed tests: a base that explains the hits needs none."""
 
 
@@ -85,7 +85,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     whole, base = _base_in_whole_records(bench, few, start)
     first = accept_structure(whole, base, base)
     if first.passed:
-        return _complete(whole, base, first, _UNTESTED)
+        return _complete(whole, base, first, UNTESTED)
     progress("directed tests")
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = screen(few, near, few.candidates, resolution=SHORT)
@@ -94,7 +94,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     none = _complete(whole, base, first, screening)
     if not done:
         return none
-    if found := _needless(done[0], screening):
+    if found := needless(done[0], screening):
         return found
     return StructureOutcome(_judged(none.outcome, done), done[0].bench, whole)
 
@@ -107,17 +107,19 @@ def _complete(
     return StructureOutcome(none, bench, bench)
 
 
-def _needless(best: WholeFit, screening: Screening) -> StructureOutcome | None:
+def needless(best: WholeFit, screening: Screening) -> StructureOutcome | None:
     """Return the outcome without an effect where the best one is nearly off.
 
     Such a fit has found the records by its base, which is a further start for the base
     alone. What the base does not explain either is no reason to name the effect.
     """
-    if weakest_amplitude(best.fit) >= STRUCTURE.plain_amplitude:
+    amplitude = weakest_amplitude(best.fit)
+    if amplitude >= STRUCTURE.plain_amplitude:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
     judged = accept_structure(bench, base, base)
-    if not (judged.passed or best.acceptance.passed):
+    nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
+    if not (judged.passed or nothing):
         return None
     return _complete(bench, base, judged, screening)
 
