@@ -60,7 +60,7 @@ class StructureOutcome:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WholeFit:
+class JudgedFit:
     """A fit to whole records on its own bench, with its acceptance."""
 
     bench: StructureBench
@@ -107,7 +107,7 @@ def _complete(
     return StructureOutcome(none, bench, bench)
 
 
-def needless(best: WholeFit, screening: Screening) -> StructureOutcome | None:
+def needless(best: JudgedFit, screening: Screening) -> StructureOutcome | None:
     """Return the outcome without an effect where the best one is nearly off.
 
     Such a fit has found the records by its base, which is a further start for the base
@@ -234,7 +234,7 @@ def _in_whole_records(
     base: Fit,
     carried: Sequence[Fit],
     progress: Progress,
-) -> list[WholeFit]:
+) -> list[JudgedFit]:
     """Fit the best candidates to whole records, accepted ones first.
 
     One record of each condition decides which of them are fitted to all.
@@ -248,15 +248,15 @@ def _in_whole_records(
         progress(f"{fit.candidates[0].label} in whole records")
         near.append(approached(few, fit.x, fit.candidates))
     near.sort(key=lambda one: one[1].cost)
-    done: list[WholeFit] = []
+    done: list[JudgedFit] = []
     for own, fit in near:
-        if fit.cost > near[0][1].cost + STRUCTURE.behind_cost:
+        if fit.cost > near[0][1].cost + STRUCTURE.cost_above_best:
             break
         progress(f"{fit.candidates[0].label} in all records")
         whole, found = settled(
             bench, fit.x, fit.candidates, near=near_records(own, fit)
         )
-        done.append(WholeFit(whole, found, accept_structure(whole, found, base)))
+        done.append(JudgedFit(whole, found, accept_structure(whole, found, base)))
     return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
 
 
@@ -267,7 +267,7 @@ def _explains(found: tuple[StructureBench, Fit]) -> bool:
     return fit.chi2 * bench.coherence < limit
 
 
-def _judged(none: SearchOutcome, done: Sequence[WholeFit]) -> SearchOutcome:
+def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
     """Compare the best fit with its rivals under one whitening."""
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
@@ -295,7 +295,7 @@ def _worth_it(carried: Sequence[Fit]) -> list[Fit]:
     ]
 
 
-def _alike(best: WholeFit, fit: Fit) -> Fit:
+def _alike(best: JudgedFit, fit: Fit) -> Fit:
     """Return a rival under the whitening of the best fit."""
     if best.bench.nonlinear(fit.candidates):
         return fitted_finely(best.bench, fit.x, fit.candidates, 3)

@@ -211,10 +211,10 @@ class StructureSettings:
     whole_fits: int = numerical(
         3, "fits", "most fits carried to whole records", "a prototype on 24 campaigns"
     )
-    behind_cost: float = numerical(
+    cost_above_best: float = numerical(
         200.0,
         "chi2",
-        "cost behind the best one, in one record of each condition, above which a fit "
+        "cost above the best one, in one record of each condition, above which a fit "
         "is not carried to all records",
         "far above the difference of rivals, which grows with the records",
     )

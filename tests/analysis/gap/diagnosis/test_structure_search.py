@@ -7,8 +7,8 @@ from hit_campaigns import Hidden, write_campaign
 from jointbench.analysis.gap.diagnosis.structure_fits import accept_structure
 from jointbench.analysis.gap.diagnosis.structure_search import (
     UNTESTED,
+    JudgedFit,
     StructureOutcome,
-    WholeFit,
     needless,
     search_structure,
 )
@@ -29,12 +29,12 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> StructureOutcome:
     return search_structure(bench, lambda line: None)
 
 
-def with_mass(found: StructureOutcome, mass: float) -> WholeFit:
+def with_mass(found: StructureOutcome, mass: float) -> JudgedFit:
     """Return the base of an outcome with a mass at the first place, not fitted."""
     heavy = next(c for c in found.bench.candidates if c.effect.name == "added_mass")
     problem = make_problem(found.bench, (heavy,))
     fit = minimise(problem, np.append(found.outcome.base.x, mass), iterations=0)
-    return WholeFit(found.bench, fit, accept_structure(found.bench, fit, fit))
+    return JudgedFit(found.bench, fit, accept_structure(found.bench, fit, fit))
 
 
 def test_an_effect_that_is_nearly_off_is_not_named(found: StructureOutcome) -> None:
