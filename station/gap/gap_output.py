@@ -128,6 +128,8 @@ def _gap_words(found: Diagnosis) -> str:
 def _limit_words(found: Diagnosis) -> str:
     largest, limit = found.null_statistic
     words = f"null test {short(largest)} (limit {short(limit)})"
+    if limit == 0.0:
+        words = "no directed tests were needed"
     if found.evidence is not None:
         limits = found.evidence.limits
         words += (

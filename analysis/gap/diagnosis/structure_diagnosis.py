@@ -117,12 +117,13 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
         shown = outcome.level
     base, accepted = outcome.base, outcome.acceptance.passed
     best, on = (outcome.best, bench) if accepted else (base, found.base_bench)
+    before = _gap(found.base_bench, base)
     return Diagnosis(
         verdict=verdict.finding,
         effects=effects_of(outcome, bench, shown),
         candidates=_ranked(found),
-        gap_before=_gap(found.base_bench, base),
-        gap_after=_gap(on, best),
+        gap_before=before,
+        gap_after=before if best is base else _gap(on, best),
         prior_deviations={
             name: (float(b), float(a))
             for name, b, a in zip(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Responses to hits: closures by torque, force columns, and forces of laws at ports."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,46 +100,48 @@ class HitModel:
         weights: FloatArray,
         layout: BaseLayout,
         changes: Sequence[ComplexArray] = (),
-    ) -> FloatArray:
-        """Return the slopes by the base, shape (n_records, n_base, *shape).
+    ) -> Iterator[FloatArray]:
+        """Yield the slopes by each base coordinate, shape (n_records, *shape).
 
         Args:
             weights: of the columns of each record's point, shape (n_records, 9).
             layout: base coordinates.
             changes: slopes of the forces of the laws by each coordinate.
         """
-        names = layout.names
-        rows = np.empty((len(weights), len(names), *self.shape))
-        for one in self.closures:
-            bodies = self.campaign.bodies
-            slopes = response_slopes(one.closure, bodies, one.state, layout)
-            for k, name in enumerate(names):
-                found = self._struck(slopes[name], one.records, weights)
+        bodies = self.campaign.bodies
+        slopes = [
+            response_slopes(one.closure, bodies, one.state, layout)
+            for one in self.closures
+        ]
+        for k, name in enumerate(layout.names):
+            rows = np.empty((len(weights), *self.shape))
+            for one, own in zip(self.closures, slopes, strict=True):
+                found = self._struck(own[name], one.records, weights)
                 if self.forces is not None:
-                    forces = self.forces[one.records]
-                    found += self._pushed(slopes[name], forces)
+                    found += self._pushed(own[name], self.forces[one.records])
                 if changes:
-                    own = changes[k][one.records]
-                    found += self._pushed(one.closure.response, own)
-                rows[one.records, k] = found
-        return rows
+                    moved = changes[k][one.records]
+                    found += self._pushed(one.closure.response, moved)
+                rows[one.records] = found
+            yield rows
 
     def _struck(
         self, response: ComplexArray, records: IntArray, weights: FloatArray
     ) -> FloatArray:
         """Return records of a response between sensors and columns."""
-        scaled = response * self._channels()[:, :, None]
         points = self.campaign.hits.point[records]
-        spectrum = np.empty(
-            (len(records), response.shape[1], response.shape[0]), dtype=complex
-        )
+        found = np.empty((len(records), *self.shape))
+        channels = self._channels().T[:, None]
         for point in np.unique(points):
             own = np.flatnonzero(points == point)
-            columns = scaled[:, :, point * COLUMNS : (point + 1) * COLUMNS]
-            moved = columns @ weights[records[own]].T
-            spectrum[own] = moved.transpose(2, 1, 0)
-        spectrum *= self.frame.force[records][:, None]
-        return self.frame.records(spectrum)
+            columns = response[:, :, point * COLUMNS : (point + 1) * COLUMNS]
+            # Lines last: the transforms are along them.
+            lines = np.ascontiguousarray(columns.transpose(1, 2, 0))
+            lines *= channels
+            moved = weights[records[own]].astype(np.complex128) @ lines
+            moved *= self.frame.force[records[own]]
+            found[own] = self.frame.records(moved).transpose(1, 0, 2)
+        return found
 
     def _pushed(self, response: ComplexArray, forces: ComplexArray) -> FloatArray:
         """Return records of forces across the ports, whose columns are the last."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
@@ -213,16 +213,22 @@ class StructureBench:
         """
         weights = landing_weights(self.landing)
         model = self.model(base, terms, resolution.window)
-        if model.forces is None:
-            rows = model.slopes(weights, self.layout)
-        else:
+        changes: list[ComplexArray] = []
+        added: list[ComplexArray] = []
+        if model.forces is not None:
             laws = LawSlopes(self, model.frame, model.forces, base, terms)
-            rows = model.slopes(weights, self.layout, laws.by_base())
+            changes = laws.by_base()
             if self.nonlinear([t.candidate for t in terms], every=True):
-                added = [model.pushed(own)[:, None] for own in laws.by_terms()]
-                rows = np.concatenate([rows, *added], axis=1)
-        white = self._whitened(rows)
-        return white.transpose(0, 2, 1).reshape(-1, rows.shape[1])
+                added = laws.by_terms()
+        n, records = self.layout.sd.size, len(weights)
+        columns = np.empty((n + len(added), records, *model.shape))
+        for k, rows in enumerate(model.slopes(weights, self.layout, changes)):
+            np.divide(rows, self.sigma[:, :, None], out=columns[k])
+        for k, forces in enumerate(added):
+            columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
+        flat = columns.reshape(len(columns), records, -1)
+        self._white(model.shape[1])(flat.transpose(1, 0, 2))
+        return flat.reshape(len(columns), -1).T
 
     def refine(
         self,
@@ -359,15 +365,23 @@ class StructureBench:
 
     def _whitened(self, rows: FloatArray) -> FloatArray:
         """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""
-        count = rows.shape[3]
         scaled = rows / self.sigma[:, None, :, None]
         flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
+        return self._white(rows.shape[3])(flat)
+
+    def _white(self, count: int) -> Callable[[FloatArray], FloatArray]:
+        """Return the whitening of records of so many samples, in place."""
         if self.directions is None:
-            return flat
-        white: HitWhitening = self._kept(
+            return _unchanged
+        found: HitWhitening = self._kept(
             ("white", count), lambda: whitening_of(self._scaled(count))
         )
-        return white(flat)
+        return found
+
+
+def _unchanged(rows: FloatArray) -> FloatArray:
+    """Return rows before directions are known."""
+    return rows
 
 
 def _frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:

@@ -145,30 +145,38 @@ class StructureSettings:
         0.5, "of the cost", "the same while the fit is far from the records"
     )
     near_chi2: float = numerical(
-        30.0,
+        300.0,
         "-",
         "chi2/dof above which hits are not expanded about where they landed",
-        "far from the records the residual is not one of landing",
+        "1.7 % of the peak: hits at their points leave 0.5 to 1 % in whole records, "
+        "and a stop at a bolt was left there, at 31.6, with a limit of 30",
     )
-    law_windows: tuple[float | None, ...] = numerical(
-        (0.02, 0.06, None),
+    explaining_chi2: float = numerical(
+        10.0,
+        "-",
+        "chi2/dof of the base in one record of each condition, each met where it "
+        "landed, above which it is not fitted to all records",
+        "far above the limit of a verdict",
+    )
+    approach_windows: tuple[float, ...] = numerical(
+        (0.02, 0.06),
         "s",
-        "windows in which a fit with nonlinear laws approaches whole records, on one "
-        "record of each condition; None for whole records",
+        "windows in which a fit approaches whole records, on one record of each "
+        "condition",
         "a step in all whole records costs twenty times as much as one in 20 ms",
     )
     landing_windows: tuple[float, float] = numerical(
         (0.02, 0.06),
         "s",
-        "windows in which such a fit meets all hits where they landed, one after the "
+        "windows in which it then meets all hits where they landed, one after the "
         "other, before it is fitted to all whole records",
         "hits beside their point slip other sliders, so the second is more exact",
     )
-    law_rounds: int = numerical(
+    approach_rounds: int = numerical(
         3, "rounds", "most rounds of such a fit with where the hits landed"
     )
-    law_iterations: int = numerical(
-        12, "steps", "most steps of a fit with nonlinear laws in one of these windows"
+    approach_iterations: int = numerical(
+        12, "steps", "most steps of such a fit in one window"
     )
     fine_iterations: int = numerical(
         2,
@@ -203,10 +211,29 @@ class StructureSettings:
     whole_fits: int = numerical(
         3, "fits", "most fits carried to whole records", "a prototype on 24 campaigns"
     )
+    cost_above_best: float = numerical(
+        200.0,
+        "chi2",
+        "cost above the best one, in one record of each condition, above which a fit "
+        "is not carried to all records",
+        "far above the difference of rivals, which grows with the records",
+    )
+    plain_amplitude: float = numerical(
+        10.0,
+        "sd",
+        "size of the best effect below which the base is fitted again from its start",
+        "effects that are named are 50 sd and more",
+    )
     whole_cost_ratio: float = numerical(
         3.0,
         "of the best cost",
         "cost in a longer window above which a fit is not carried to whole records",
+    )
+    explained_cost_ratio: float = numerical(
+        1.5,
+        "of the best cost",
+        "the same once another fit explains one record of each condition",
+        "fits that no record separates differ by far less",
     )
     least_arm: float = numerical(
         0.01,

@@ -209,7 +209,8 @@ def test_slopes_are_those_of_differences(
         return model_of(made, replace(bare, attached=attached)).response(weights)
 
     bare = state_of(made.bodies, made.nominal, layout, base)
-    slopes = model_of(made, replace(bare, attached=attached)).slopes(weights, layout)
+    model = model_of(made, replace(bare, attached=attached))
+    slopes = np.stack(list(model.slopes(weights, layout)), axis=1)
     for k, name in enumerate(layout.names):
         step = np.zeros(layout.sd.size)
         step[k] = 1e-5

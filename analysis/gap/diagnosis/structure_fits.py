@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""Fits of hits on bolted bodies to whole records, and their acceptance.
+
+Records are approached on one of each condition, window by window, each hit met where it
+landed; only then are all of them fitted.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.judgement.naming import Acceptance
+from jointbench.analysis.gap.model.effect import Candidate
+from jointbench.analysis.gap.residuals.evaluation_resolutions import (
+    FINE,
+    FULL,
+    Resolution,
+)
+from jointbench.analysis.gap.residuals.fit_records import Fit, split
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import cost_at, minimise
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+
+
+def one_of_each(hits: HitRecords) -> IntArray:
+    """Return the first record of each combination of point, torque and level."""
+    seen: dict[tuple[float, ...], int] = {}
+    for k in range(len(hits.names)):
+        key = (float(hits.point[k]), float(hits.torque[k]), float(hits.level[k]))
+        seen.setdefault(key, k)
+    return np.array(sorted(seen.values()), dtype=np.int64)
+
+
+def approached(
+    few: StructureBench, start: FloatArray, candidates: Sequence[Candidate]
+) -> tuple[StructureBench, Fit]:
+    """Fit one record of each condition, window by window to whole records.
+
+    A fit that is far off goes to whole records at once.
+
+    Args:
+        few: one record of each condition.
+        start: base coordinates, then those of the effects.
+        candidates: effects.
+    """
+    x = start
+    for window in STRUCTURE.approach_windows:
+        few, fit = _settled_in(few, x, candidates, Resolution(window))
+        x = fit.x
+        if not near_records(few, fit):
+            break
+    return _settled_in(few, x, candidates, FULL)
+
+
+def near_records(bench: StructureBench, fit: Fit) -> bool:
+    """Return whether a fit is so near the records that they show where hits landed."""
+    return fit.chi2 * bench.coherence < STRUCTURE.near_chi2 * fit.residual.size
+
+
+def _settled_in(
+    few: StructureBench,
+    x: FloatArray,
+    candidates: Sequence[Candidate],
+    window: Resolution,
+) -> tuple[StructureBench, Fit]:
+    """Fit a window, in turn with where each hit landed."""
+    landing = few.landing
+    for k in range(STRUCTURE.approach_rounds):
+        terms = split(x, few.base_sd.size, candidates)
+        few = few.at(x[: few.base_sd.size], terms, landing, few.floor)
+        problem = make_problem(few, candidates)
+        before = cost_at(problem, x, window)
+        fit = minimise(
+            problem,
+            x,
+            window,
+            iterations=STRUCTURE.approach_iterations,
+            exact_slopes=False,
+        )
+        x = fit.x
+        if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
+            break
+        if not near_records(few, fit):
+            break
+        landing, _ = few.landed(fit.base, fit.terms, window.window)
+    return few, fit
+
+
+def settled(
+    bench: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    near: bool,
+) -> tuple[StructureBench, Fit]:
+    """Fit all whole records, in turn with where each hit landed.
+
+    Args:
+        bench: all records.
+        start: base coordinates, then those of the effects.
+        candidates: effects.
+        near: whether the start is near the records: each hit is met where it landed
+            before the first step, which would move such a start away again.
+    """
+    bench = _met(bench, start, candidates, near=near)
+    fit = _whole(bench, start, candidates)
+    for _ in range(STRUCTURE.settling_rounds):
+        landing = bench.landing
+        near = near_records(bench, fit)
+        if near:
+            landing, _ = bench.landed(fit.base, fit.terms)
+        bench = bench.at(fit.base, fit.terms, landing, bench.floor)
+        before, fit = fit.cost, _whole(bench, fit.x, candidates, exact=near)
+        least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
+        if before - fit.cost < least * fit.cost:
+            break
+    if near and not bench.nonlinear(candidates):
+        return bench, fit
+    return bench, fitted_finely(bench, fit.x, candidates, STRUCTURE.fine_iterations)
+
+
+def _met(
+    bench: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    near: bool,
+) -> StructureBench:
+    """Return the bench at a start, about where its hits landed if that is near."""
+    n = bench.base_sd.size
+    terms = split(start, n, candidates)
+    bench = bench.at(start[:n], terms, bench.landing, bench.table_floor)
+    for window in STRUCTURE.landing_windows if near else ():
+        landing, _ = bench.landed(start[:n], terms, window)
+        bench = bench.at(start[:n], terms, landing, bench.floor)
+    return bench
+
+
+def fitted_finely(
+    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate], steps: int
+) -> Fit:
+    """Fit whole records with the time integration that is judged.
+
+    Args:
+        bench: all records.
+        x: coordinates.
+        candidates: effects.
+        steps: most steps, if a law is integrated at all.
+    """
+    problem = make_problem(bench, candidates)
+    if not bench.nonlinear(candidates):
+        return minimise(problem, x, FULL, iterations=0)
+    return minimise(
+        problem,
+        x,
+        FINE,
+        iterations=steps,
+        jacobian_resolution=FULL,
+        exact_slopes=False,
+    )
+
+
+def _whole(
+    bench: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    exact: bool = False,
+) -> Fit:
+    """Fit whole records, hits as expanded; if exact, with the slopes at the end."""
+    return minimise(
+        make_problem(bench, candidates),
+        start,
+        FULL,
+        iterations=STRUCTURE.whole_iterations,
+        exact_slopes=exact,
+    )
+
+
+def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
+    """Judge a fit of whole records by its chi2 and by the deviations of its base.
+
+    A base can take over a loose bolt at an inconspicuous chi2 if one of its parameters
+    deviates by many sd, so chi2 alone does not decide.
+
+    Args:
+        bench: on which the fit was found.
+        fit: to be judged.
+        base: fit without effects.
+    """
+    dof = bench.blocks.dof / bench.coherence
+    chi2 = fit.chi2 / dof
+    policy = bench.policy
+    allowed = policy.floor_chi2
+    if fit.candidates:
+        allowed += policy.floor_chi2_share * max(base.chi2 / dof - 1.0, 0.0)
+    deviation = float(np.abs(fit.prior_deviations).max())
+    reason = ""
+    if chi2 > allowed:
+        reason = f"chi2/dof is {chi2:.4g}, the limit is {allowed:.4g}"
+    elif deviation > policy.floor_prior_limit:
+        worst = bench.base_names[int(np.argmax(np.abs(fit.prior_deviations)))]
+        reason = f"{worst} is {deviation:.1f} sd from its nominal value"
+    return Acceptance(
+        passed=not reason,
+        reason=reason,
+        excess=chi2 - 1.0,
+        allowed=allowed - 1.0,
+        remaining=None,
+        remaining_allowed=0.0,
+        unexplained=bool(reason),
+        left=None,
+    )
