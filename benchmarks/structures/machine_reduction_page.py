@@ -77,8 +77,9 @@ def modes(found: dict[str, Any]) -> list[str]:
 def timed(found: dict[str, Any]) -> list[str]:
     """Return a row on the time at points without full solves."""
     spent = found["cpu_least"]
+    where = f" (commit {found['commit']})" if "commit" in found else ""
     return [
-        f"20 modes at {found['points']} points | median {spent['median']:.1f} ms, "
+        f"20 modes at {found['points']} points{where} | median {spent['median']:.1f} ms, "
         f"largest {spent['largest']:.1f} ms | 10 ms"
     ]
 
