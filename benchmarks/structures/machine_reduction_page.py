@@ -79,7 +79,8 @@ def timed(found: dict[str, Any]) -> list[str]:
     spent = found["cpu_least"]
     where = f" (commit {found['commit']})" if "commit" in found else ""
     return [
-        f"20 modes at {found['points']} points{where} | median {spent['median']:.1f} ms, "
+        f"20 modes at {found['points']} points{where} | median "
+        f"{spent['median']:.1f} ms, "
         f"largest {spent['largest']:.1f} ms | 10 ms"
     ]
 
