@@ -2,9 +2,11 @@
 """Seven bodies and six joints reduced by interfaces, against full solves.
 
 OMP_NUM_THREADS=1 python benchmarks/structures/machine_reduction.py --scale 1
-    [--points 200] [--lines 6] [--damped 0] [--seed 11] [--cache DIR] [--append FILE]
+    [--points 200] [--timed 0] [--lines 6] [--damped 0] [--seed 11] [--cache DIR]
+    [--append FILE]
 
-Prints one JSON object: sizes, CPU and wall seconds, memory, errors and bounds.
+Prints one JSON object: sizes, CPU and wall seconds, memory, errors and bounds. With
+--timed the modes are found at that many points without full solves, to be timed.
 `machine_reduction_page.py` writes the page from a file of these.
 """
 
@@ -95,23 +97,39 @@ def points_of(seed: int, count: int) -> list[np.ndarray]:
     ]
 
 
+def spent_on(whole: Assembled, points: list[np.ndarray]) -> list[dict[str, float]]:
+    """Return the time of the modes at each point [ms], see `repeated`."""
+    values = [JointValues(point, np.zeros(PARAMETERS)) for point in points]
+    return [repeated(lambda v=one: whole.modes(v, MODES), 3) for one in values]
+
+
+def times_of(spent: list[dict[str, float]]) -> dict[str, dict[str, float]]:
+    """Return the median and the largest of the least times of points [ms]."""
+    return {
+        key: {
+            "median": float(np.median([one[key] for one in spent])),
+            "largest": max(one[key] for one in spent),
+        }
+        for key in ("cpu_least", "wall_least")
+    }
+
+
 def against_full(
     structure: Structure, whole: Assembled, points: list[np.ndarray]
 ) -> dict[str, Any]:
     """Compare frequencies at points of the box with full solves."""
-    errors, bounds, seconds, broken, lowest = [], [], [], 0, []
+    errors, bounds, broken, lowest = [], [], 0, []
     for point in points:
         values = JointValues(point, np.zeros(PARAMETERS))
         found, _ = whole.modes(values, MODES)
-        spent = repeated(lambda v=values: whole.modes(v, MODES), 3)
         bound = whole.bound(values, MODES) / found
         full = solve_full(structure, point, MODES).natural_frequency
         error = found / full - 1.0
         broken += int(np.any(error > bound + ROUNDING))
         errors.append(float(np.abs(error).max()))
         bounds.append(float(bound.max()))
-        seconds.append(spent)
         lowest.append(float(full[0]))
+        print(f"error {errors[-1]:.1e}, {bounds[-1]:.1e}", file=sys.stderr, flush=True)
     return {
         "points": len(points),
         "largest_error": max(errors),
@@ -120,13 +138,7 @@ def against_full(
         "median_bound": float(np.median(bounds)),
         "largest_bound": max(bounds),
         "bound_broken": broken,
-        "modes_ms": {
-            key: {
-                "median": float(np.median([one[key] for one in seconds])),
-                "largest": max(one[key] for one in seconds),
-            }
-            for key in ("cpu_least", "wall_least")
-        },
+        "modes_ms": times_of(spent_on(whole, points)),
         "lowest_hz": min(lowest),
     }
 
@@ -194,6 +206,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--scale", type=float, default=1.0)
     parser.add_argument("--points", type=int, default=10)
+    parser.add_argument("--timed", type=int, default=0)
     parser.add_argument("--lines", type=int, default=6)
     parser.add_argument("--damped", type=int, default=0)
     parser.add_argument("--seed", type=int, default=11)
@@ -222,6 +235,10 @@ def main() -> None:
         "coordinates": whole.model.size,
         "bodies": {body.name: body.size for body in whole.components},
     }
+    if options.timed:
+        points = points_of(options.seed + 1, options.timed)
+        found = times_of(spent_on(whole, points))
+        report["timed"] = {"points": options.timed, **found}
     print(json.dumps(report), file=sys.stderr, flush=True)
     if options.points:
         points = points_of(options.seed, options.points)

@@ -74,6 +74,17 @@ def modes(found: dict[str, Any]) -> list[str]:
     ]
 
 
+def timed(found: dict[str, Any]) -> list[str]:
+    """Return a row on the time at points without full solves."""
+    spent = found["cpu_least"]
+    where = f" (commit {found['commit']})" if "commit" in found else ""
+    return [
+        f"20 modes at {found['points']} points{where} | median "
+        f"{spent['median']:.1f} ms, "
+        f"largest {spent['largest']:.1f} ms | 10 ms"
+    ]
+
+
 def receptances(found: dict[str, Any]) -> list[str]:
     """Return rows on receptances of 2,000 lines, 3 x 3."""
     rows = []
@@ -134,6 +145,7 @@ def section(record: dict[str, Any]) -> str:
     else:
         title, rows = f"{record['freedoms']:,} degrees of freedom", bodies(record)
         rows += modes(record["modes"]) if "modes" in record else []
+        rows += timed(record["timed"]) if "timed" in record else []
         rows += receptances(record.get("receptance", {}))
     load = record.get("load_average")
     said = "not recorded" if load is None else f"{load:.0f}"

@@ -7,11 +7,11 @@ there, and its range ends at 1/shift.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.linalg.blas import dtrsm
-from scipy.linalg.lapack import dpotrf
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
@@ -114,25 +114,28 @@ def _without_shift(value: FloatArray, shift: float) -> FloatArray:
 
 
 def _random_start(size: int, count: int) -> FloatArray:
-    block = min(count + _SPARE, size)
-    return np.random.default_rng(0).standard_normal((size, block))
+    return _random(size, min(count + _SPARE, size))
 
 
 def _narrow_start(size: int, block: int, near: FloatArray | None) -> FloatArray:
     """Return a block of mixtures of vectors, with a little of every direction."""
-    random = np.random.default_rng(0)
-    start = random.standard_normal((size, block))
+    start = _random(size, block)
     if near is not None:
-        mixed = near @ random.standard_normal((near.shape[1], block))
-        start = mixed + _RANDOM_PART * start
-    return np.asarray(start)
+        start = near @ _random(near.shape[1], block) + _RANDOM_PART * start
+    return start
 
 
-def _all_of_inverse(
-    factor: tuple[FloatArray, bool], size: int
-) -> tuple[FloatArray, FloatArray]:
+@lru_cache(maxsize=32)
+def _random(rows: int, columns: int) -> FloatArray:
+    """Return normal numbers, each time the same, to be read only."""
+    found = np.random.default_rng(rows).standard_normal((rows, columns))
+    found.flags.writeable = False
+    return found
+
+
+def _all_of_inverse(factor: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:
     """Return all eigenvalues of the inverse, the largest first, and vectors."""
-    inverse = cho_solve(factor, np.eye(size), check_finite=False)
+    inverse = _solved(factor, np.eye(size))
     value, vector = np.linalg.eigh(0.5 * (inverse + inverse.T))
     return value[::-1], vector[:, ::-1]
 
@@ -144,30 +147,32 @@ def shifted_inverse(
     factor = _factor(matrix, shift)
 
     def solve(load: FloatArray) -> FloatArray:
-        return np.asarray(cho_solve(factor, load, check_finite=False))
+        return _solved(factor, load)
 
     return solve
 
 
-def _factor(matrix: FloatArray, shift: float) -> tuple[FloatArray, bool]:
+def _factor(matrix: FloatArray, shift: float) -> FloatArray:
+    """Return the lower Cholesky factor of matrix + shift."""
     # The transpose of a symmetric matrix has the order of LAPACK, which then factors in
     # place.
     shifted = np.array(matrix.T, order="F")
     np.einsum("ii->i", shifted)[:] += shift
-    try:
-        factor: tuple[FloatArray, bool] = cho_factor(
-            shifted, lower=True, overwrite_a=True, check_finite=False
-        )
-    except LinAlgError as error:
+    factor, failed = dpotrf(shifted, lower=1, clean=0, overwrite_a=1)
+    if failed:
         raise BadData(
-            f"the reduced stiffness is not positive ({error}); a joint's stiffness "
-            "exceeds the box of the reduction by far"
-        ) from error
-    return factor
+            f"the reduced stiffness is not positive (leading minor {failed}); a "
+            "joint's stiffness exceeds the box of the reduction by far"
+        )
+    return np.asarray(factor)
+
+
+def _solved(factor: FloatArray, load: FloatArray) -> FloatArray:
+    return np.asarray(dpotrs(factor, load, lower=1)[0])
 
 
 def _block_lanczos(
-    factor: tuple[FloatArray, bool],
+    factor: FloatArray,
     start: FloatArray,
     allowed: Callable[[FloatArray], FloatArray],
     first: int,
@@ -181,7 +186,7 @@ def _block_lanczos(
             of those that are wanted.
         first: number of vectors before the first check.
     """
-    size = factor[0].shape[0]
+    size = factor.shape[0]
     new = _orthonormal(start)
     # Columns are contiguous, as LAPACK wants them.
     space = np.zeros((size, size), order="F")
@@ -190,7 +195,7 @@ def _block_lanczos(
     while True:
         high = low + new.shape[1]
         space[:, low:high] = new
-        image = cho_solve(factor, new, check_finite=False)
+        image = _solved(factor, new)
         new, inside = _next_block(space[:, :high], image)
         small[:high, low:high] = inside
         if high == size or high >= first:
@@ -207,7 +212,7 @@ def _block_lanczos(
     # One more inversion damps what high modes leave; it stays orthonormal to rounding.
     better = (space[:, :high] @ vector) * value
     better += new @ outside
-    return value, np.asarray(np.linalg.qr(better)[0])
+    return value, _orthonormal(better)
 
 
 def _allowed(value: FloatArray, shift: float) -> FloatArray:
@@ -232,8 +237,9 @@ def _orthonormal(block: FloatArray) -> FloatArray:
     By the Cholesky factor of their products, which takes a third of the time of
     reflections; these are used where columns are nearly dependent.
     """
-    scaled = block / np.maximum(np.linalg.norm(block, axis=0), 1e-300)
-    factor, failed = dpotrf(scaled.T @ scaled, lower=1)
-    if failed or np.diag(factor).min(initial=1.0) < _NEARLY_DEPENDENT:
+    products = block.T @ block
+    factor, failed = dpotrf(products, lower=1)
+    length = np.sqrt(np.diag(products))
+    if failed or np.any(np.diag(factor) < _NEARLY_DEPENDENT * length):
         return np.asarray(np.linalg.qr(block)[0])
-    return np.asarray(dtrsm(1.0, factor, scaled.T, lower=1).T)
+    return np.asarray(dtrsm(1.0, factor, block.T, lower=1).T)

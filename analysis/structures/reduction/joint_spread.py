@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The matrices of joints, each over the few coordinates that move it."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -17,11 +16,23 @@ class JointSpread:
         size: number of coordinates.
         columns: coordinates of each group of directions.
         blocks: G over these, shape (n_directions, n_columns, n_columns) [1/kg].
+        entries: of each group, in the whole matrix row by row; None is all of it.
     """
 
     size: int
     columns: tuple[IntArray, ...]
     blocks: tuple[FloatArray, ...]
+    entries: tuple[IntArray | None, ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Find the entries once."""
+        entries = tuple(self._entries(own) for own in self.columns)
+        object.__setattr__(self, "entries", entries)
+
+    def _entries(self, columns: IntArray) -> IntArray | None:
+        if np.array_equal(columns, np.arange(self.size)):
+            return None
+        return np.asarray((columns[:, None] * self.size + columns).ravel())
 
     @classmethod
     def of_all(cls, matrices: FloatArray, size: int) -> "JointSpread":
@@ -38,15 +49,18 @@ class JointSpread:
         shape = (self.size, self.size)
         whole = np.zeros(shape) if base is None else np.array(base, float, order="C")
         flat = whole.reshape(-1)
-        for own, columns, block in self._groups(values):
+        low = 0
+        for entries, block in zip(self.entries, self.blocks, strict=True):
+            own = values[low : low + block.shape[0]]
+            low += own.size
             if not np.any(own):
                 continue
             part = own @ block.reshape(own.size, -1)
-            if np.array_equal(columns, np.arange(self.size)):
+            # A flat index takes half the time of rows and columns.
+            if entries is None:
                 flat += part
             else:
-                # A flat index takes half the time of rows and columns.
-                flat[(columns[:, None] * self.size + columns).ravel()] += part
+                flat[entries] += part
         return whole
 
     def between(self, shapes: FloatArray) -> FloatArray:
@@ -71,14 +85,3 @@ class JointSpread:
         small = self.between(turn)
         small = 0.5 * (small + np.swapaxes(small, 1, 2))
         return JointSpread.of_all(small, turn.shape[1])
-
-    def _groups(
-        self, values: FloatArray
-    ) -> Sequence[tuple[FloatArray, IntArray, FloatArray]]:
-        edges = np.cumsum([0] + [block.shape[0] for block in self.blocks])
-        return [
-            (values[low:high], columns, block)
-            for low, high, columns, block in zip(
-                edges, edges[1:], self.columns, self.blocks, strict=False
-            )
-        ]

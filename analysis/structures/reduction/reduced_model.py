@@ -2,7 +2,7 @@
 """A reduced structure, solved in about a millisecond, with an error bound."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -44,6 +44,7 @@ class ReducedModel:
         fixed_strain: of springs without parameters by the same motions, relative to the
             trace, shape (n_motions, n_motions) [-]; None is none.
         guess: motions near the lowest modes, shape (r, k): a start of their solution.
+        held: `unstrained` where every joint is stiff.
     """
 
     stiffness: FloatArray
@@ -58,11 +59,14 @@ class ReducedModel:
     names: tuple[str, ...]
     guess: FloatArray | None = None
     fixed_strain: FloatArray | None = None
+    held: tuple[FloatArray, int] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "stiffness", "loss", "damping", "strains", "guess")
         freeze(self, "fixed_strain")
+        held = self.unstrained(np.ones(self.strains.shape[0], bool))
+        object.__setattr__(self, "held", held)
 
     @property
     def size(self) -> int:
@@ -78,6 +82,13 @@ class ReducedModel:
                 f"{len(self.names)} values, none below zero"
             )
         return self.spread.total(values, self.stiffness)
+
+    def unstrained(self, stiff: BoolArray) -> tuple[FloatArray, int]:
+        """Rotate the rigid motions of the bodies: those that nothing strains first."""
+        if self.fixed_strain is None:
+            return unstrained(self.strains, stiff)
+        strains = np.concatenate([self.strains, self.fixed_strain[None]])
+        return unstrained(strains, np.append(stiff, True))
 
     def restricted(self, turn: FloatArray) -> "ReducedModel":
         """Return the model in fewer coordinates.
@@ -214,7 +225,8 @@ def _solved(
     """Return rigid motions, then what `solve` finds among the others."""
     values = np.asarray(stiffness, float)
     matrix = model.with_joints(values)
-    turn, rigid = _unstrained(model, values > 0)
+    stiff = values > 0
+    turn, rigid = model.held if stiff.all() else model.unstrained(stiff)
     if not rigid:
         level, shapes = solve(matrix, model.guess)
         return ReducedModes(level, frequency_of(level), shapes, 0)
@@ -227,14 +239,6 @@ def _solved(
     value[rigid:], vector[rigid:, rigid:] = level, shapes
     vector[:moved] = turn @ vector[:moved]
     return ReducedModes(value, frequency_of(value), vector, min(rigid, count))
-
-
-def _unstrained(model: ReducedModel, stiff: BoolArray) -> tuple[FloatArray, int]:
-    """Rotate the rigid motions of the bodies: those that nothing strains first."""
-    if model.fixed_strain is None:
-        return unstrained(model.strains, stiff)
-    strains = np.concatenate([model.strains, model.fixed_strain[None]])
-    return unstrained(strains, np.append(stiff, True))
 
 
 def _turned(

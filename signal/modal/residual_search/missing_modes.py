@@ -5,7 +5,9 @@ Where a fit has all modes, its residual is white. A mode that was missed leaves 
 that every FRF shares; it biases its neighbours and makes their intervals too narrow. So
 the residual is compared with resonances of usual widths at every line. Where one stands
 out, a pole is tried together with the modes around it, and kept where the FRF needs it
-by the same rule as any candidate, and where it explains most of what the fit left.
+by the same rule as any candidate, and where it explains most of what the fit left. One
+nearer to a mode than its width is kept where it leaves nothing but noise and many FRFs
+give it a shape of its own: a peak that is not that of a linear mode has one shape.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,6 +32,7 @@ from jointbench.signal.modal.residual_search.local_fit import (
     WholeFit,
     group_around,
 )
+from jointbench.signal.modal.shape_checks import mac_matrix
 
 Seen = Callable[[complex], bool]
 """Whether the FRF itself has a pole there [rad/s]."""
@@ -47,8 +50,12 @@ _LEAST_EXCESS = 0.2
 # Relative sd of the damping up to which a mode is known; highest damping ratio.
 _VAGUE, _HIGHEST_DAMPING = 1.0 / 3.0, 0.2
 # Half-power half-widths from the nearest mode, at least: nearer poles explain how one
-# peak differs from that of a single mode.
+# peak differs from that of a single mode ...
 _APART = 1.0
+# ... unless so many FRFs are measured, they explain this share, and their residues have
+# at most this assurance criterion with those of any mode (decision record 0395).
+_MANY_FRFS, _ALL_EXPLAINED, _OWN_SHAPE = 6, 0.9, 0.5
+_NEAR_TRIALS = 4
 # A decay rate in line distances below which a peak is a single line.
 _NARROWEST = 0.3
 
@@ -78,8 +85,7 @@ def find_missing(whole: WholeFit, seen: Seen | None) -> MissingModes:
     """
     found: list[complex] = []
     denied: list[complex] = []
-    limit = least_significance(whole.lines)
-    for start in trial_starts(whole, limit, apart=_APART, most=_TRIALS):
+    for start in _starts(whole):
         pole = _tried(whole, start)
         if pole is None:
             continue
@@ -89,20 +95,34 @@ def find_missing(whole: WholeFit, seen: Seen | None) -> MissingModes:
     return MissingModes(np.array(found, complex), np.array(denied, complex))
 
 
-def trial_starts(
-    whole: WholeFit, limit: float, *, apart: float, most: int
-) -> list[complex]:
+def _starts(whole: WholeFit) -> list[complex]:
+    """Return trial poles apart from the modes and, of many FRFs, some on them."""
+    starts = _trial_starts(whole, apart=_APART, most=_TRIALS)
+    if whole.lines.response.shape[0] < _MANY_FRFS:
+        return starts
+    near = _trial_starts(whole, apart=0.0, most=_NEAR_TRIALS)
+    return starts + [start for start in near if _widths_on(whole, start).size]
+
+
+def _widths_on(whole: WholeFit, start: complex) -> FloatArray:
+    """Return the half-power half-widths of the modes that a trial pole stands on."""
+    modes = whole.pole[: whole.n_modes]
+    width = measured_width(whole.lines, modes)
+    return np.asarray(width[np.abs(modes.imag - start.imag) < _APART * width])
+
+
+def _trial_starts(whole: WholeFit, *, apart: float, most: int) -> list[complex]:
     """Return trial poles where the residual is most like a resonance.
 
     Args:
         whole: fit of all lines.
-        limit: chi-squared above which a resonance stands out [-].
         apart: half-power half-widths around modes that are left out.
         most: trials.
 
     Returns:
         Poles [rad/s], the most distinct first.
     """
+    limit = least_significance(whole.lines)
     omega = whole.lines.laplace.imag
     if whole.n_modes == 0 or omega.size < 3:
         return []
@@ -168,7 +188,11 @@ def _tried(whole: WholeFit, start: complex) -> complex | None:
         2.0 * (added - pole.real), 5.0 * pitch
     )
     before, after = (_excess(f.residual, group, near) for f in (without, fitted))
-    if before < _LEAST_EXCESS or after > (1.0 - _EXPLAINED) * before:
+    apart = _away(whole.lines, pole, fitted.pole[:-1])
+    if not apart and not _own_shape(fitted):
+        return None
+    share = _EXPLAINED if apart else _ALL_EXPLAINED
+    if before < _LEAST_EXCESS or after > (1.0 - share) * before:
         return None
     need = significance(
         group.lines, fitted.residual, fitted.pole, group.noise, fitted.beyond
@@ -177,9 +201,14 @@ def _tried(whole: WholeFit, start: complex) -> complex | None:
 
 
 def trial_group(whole: WholeFit, start: complex) -> Group:
-    """Return the modes and lines around a trial pole."""
+    """Return the modes and lines around a trial pole.
+
+    On a mode there are as many lines as that mode needs: on fewer, what is left of it
+    may pass for modes beyond them.
+    """
     pitch = float(np.median(np.diff(whole.lines.laplace.imag)))
     width = float(whole.lines.laplace.real[0]) - start.real
+    width = float(np.max(_widths_on(whole, start), initial=width))
     reach = max(_REACH_WIDTHS * width, _REACH_LINES * pitch)
     return group_around(whole, start.imag, reach)
 
@@ -201,7 +230,7 @@ def refined_group(
 def _plausible(
     whole: WholeFit, fitted: RefinedPoles, pole: complex, pitch: float
 ) -> bool:
-    """Return whether a pole is within the band, known, and apart from the others."""
+    """Return whether a pole is within the band and known."""
     one = np.array([pole])
     narrow = float(measured_width(whole.lines, one)[0]) < _NARROWEST * pitch
     sd = float(np.sqrt(fitted.covariance[-1, 0, 0] * fitted.inflation[-1]))
@@ -212,8 +241,16 @@ def _plausible(
         and -pole.real < _HIGHEST_DAMPING * abs(pole)
         and sd < _VAGUE * abs(pole.real)
         and not bool(unresolved(whole.lines, one)[0])
-        and _away(whole.lines, pole, fitted.pole[:-1])
     )
+
+
+def _own_shape(fitted: RefinedPoles) -> bool:
+    """Return whether the last mode of a fit has another shape than all others."""
+    parts = fitted.fit.coefficients[:, : 2 * fitted.pole.size]
+    if parts.shape[0] < _MANY_FRFS:
+        return False
+    residue = (parts[:, ::2] + 1j * parts[:, 1::2]).T
+    return bool(np.all(mac_matrix(residue[-1:], residue[:-1]) < _OWN_SHAPE))
 
 
 def _away(lines: FrfLines, pole: complex, others: ComplexArray) -> bool:
