@@ -65,6 +65,17 @@ def test_a_missing_mode_is_named_and_the_joint_is_right_all_the_same(
         assert abs(np.log(one.value / true)) < wide
 
 
+def test_a_search_that_stopped_short_goes_on_until_something_fits(
+    reduced: ReducedModel, truth: JointValues
+) -> None:
+    """From one start, far from the joint, the missing mode is named all the same."""
+    settings = HypothesisSettings(starts=1, surveyed=1)
+    measured = [frequencies(reduced, truth, missing=2)]
+    found = weigh_hypotheses(reduced, measured, settings=settings)[0]
+    assert "mode 3 of the model" in found.hypotheses[0].text
+    assert found.hypotheses[0].chi2 < 30.0
+
+
 def test_modes_as_measured_need_no_other_hypothesis(
     reduced: ReducedModel, truth: JointValues
 ) -> None:
