@@ -4,7 +4,7 @@
 import { colour } from "./theme.js";
 
 /**
- * @param {HTMLCanvasElement} canvas square, drawn anew
+ * @param {HTMLCanvasElement} canvas square, drawn again
  * @param {{shape_re: number[], shape_im: number[]}} mode
  * @param {string[]} labels
  */
