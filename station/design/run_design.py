@@ -32,7 +32,11 @@ from jointbench.analysis.structures.design.pair_information import (
     pair_information,
 )
 from jointbench.analysis.structures.matrices.structure import Structure
-from jointbench.analysis.structures.reduction.body_moduli import is_modulus, with_moduli
+from jointbench.analysis.structures.reduction.body_moduli import (
+    is_modulus,
+    modulus_name,
+    with_moduli,
+)
 from jointbench.analysis.structures.reduction.mounted_sensors import (
     readout,
     sensor_rows,
@@ -127,7 +131,10 @@ def designed_test(model: Path, request: DesignRequest) -> DesignedTest:
     if request.measured:
         places |= {**settings.sensors, **settings.hits}
     _require_points(settings, table, request)
+    test = _test(table, settings.identify.lines)
+    test.frequency()
     structure = structure_of(settings, model.parent)
+    _require_wanted(settings, table, structure)
     values = _values(settings, table, structure, request)
     mounted = list(sensors_of(places).values())
     loads = sensor_rows(structure, mounted)
@@ -140,7 +147,6 @@ def designed_test(model: Path, request: DesignRequest) -> DesignedTest:
         np.append(values.damping, np.zeros(len(moduli))),
     )
     rows = readout(structure, reduced, mounted)
-    test = _test(table, settings.identify.lines)
     pairs = pair_information(reduced, values, test, rows, rows)
     search = _search(settings, table, reduced, pairs)
     names = tuple(places)
@@ -266,9 +272,6 @@ def _search(
         label = name if is_modulus(name) else f"{name}_stiffness"
         deviation[names.index(label)] = known.relative_sd
     wanted = table.wanted or tuple(one for one in names if not is_modulus(one))
-    unknown = [one for one in wanted if one not in names]
-    if unknown:
-        raise UsageError(f"design.wanted: no {unknown[0]!r}; there are {list(names)}")
     prior = PlanPrior(deviation, table.gain_sd, table.force_sd)
     return PlanRequest(
         pairs,
@@ -295,6 +298,21 @@ def _require_points(
             f"the plan has {request.plan_sensors} response sensors with a point, the "
             f"design {chosen}; give the plan as many, or change design.sensors"
         )
+
+
+def _require_wanted(
+    settings: StructureModel, table: DesignTable, structure: Structure
+) -> None:
+    """Check the names of wanted parameters before the meshes are reduced."""
+    there = [
+        f"{name}_{kind}"
+        for kind in ("stiffness", "damping")
+        for name in structure.parameter_names
+    ]
+    there += [modulus_name(body) for body in settings.identify.modulus_sd]
+    unknown = [one for one in table.wanted if one not in there]
+    if unknown:
+        raise UsageError(f"design.wanted: no {unknown[0]!r}; there are {there}")
 
 
 def _measured(

@@ -4,7 +4,7 @@
 from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_digest
 from jointbench.analysis.gap.model.setting import settings_of
-from jointbench.station.screen.page_parts import DataTable, Section, Text
+from jointbench.station.screen.page_parts import DataTable, ItemGroup, Section, Text
 
 DIGEST_DIGITS = 16
 
@@ -30,6 +30,8 @@ def policy_section(policy: Policy) -> Section:
         "setting alone by 30 % down and up, on campaigns made for it."
     )
     text = f"{software_version()}: gap, with {kind} of the engine (digest {digest})."
-    return Section(
-        "provenance", "Provenance", (Text(text), DataTable(caption, columns, rows))
+    fold = ItemGroup(
+        f"{len(rows)} settings that decide the verdict",
+        (DataTable(caption, columns, rows),),
     )
+    return Section("provenance", "Provenance", (Text(text), fold))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import IntArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.lumped.identified import JointParameter
@@ -18,7 +18,12 @@ from jointbench.analysis.structures.identification.hypotheses import (
 )
 from jointbench.analysis.structures.identification.hypothesis_evidence import (
     WeighedEnd,
-    weigh_end,
+)
+from jointbench.analysis.structures.identification.hypothesis_search import (
+    POOR_FIT,
+    HypothesisSearch,
+    log_weights,
+    posed,
 )
 from jointbench.analysis.structures.identification.hypothesis_text import (
     hypothesis_text,
@@ -26,15 +31,9 @@ from jointbench.analysis.structures.identification.hypothesis_text import (
 from jointbench.analysis.structures.identification.mixed_parameters import (
     mixed_parameters,
 )
-from jointbench.analysis.structures.identification.solution_branches import (
-    exchanged_starts,
-    same_branch,
-)
-from jointbench.analysis.structures.identification.stiffness_descent import descend
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Prior,
     StiffnessProblem,
-    pose_problem,
     values_of,
 )
 from jointbench.analysis.structures.identification.structure_evidence import (
@@ -42,7 +41,6 @@ from jointbench.analysis.structures.identification.structure_evidence import (
     evidence_pairs,
 )
 from jointbench.analysis.structures.identification.surveyed_starts import (
-    SurveyedStarts,
     survey_starts,
 )
 from jointbench.analysis.structures.matrices.structure import Structure
@@ -51,15 +49,6 @@ from jointbench.analysis.structures.reduction.predict_modes import (
     modal_state,
 )
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
-
-# No hypothesis fits if the probability of a larger chi2 is below this.
-_POOR_FIT = 1e-3
-# Ends whose evidence is below the best one's by this in ln carry no weight.
-_NO_WEIGHT = 12.0
-# Most rounds in which directions of a joint are exchanged in the best solution ...
-_EXCHANGES = 3
-# ... as long as chi2 falls below this part of itself.
-_BETTER = 0.9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -149,9 +138,9 @@ def weigh_hypotheses(
         base = StructureHypothesis(
             HypothesisKind.AS_MEASURED, 1.0, model, one, dict(priors or {})
         )
-        plain = _posed(base, known, sought)
+        plain = posed(base, known, sought)
         surveyed = survey_starts(plain, settings.surveyed, settings.seed)
-        search = _Search(
+        search = HypothesisSearch(
             known, sought, _named(start or {}, one.label), surveyed, settings
         )
         first = search.ends(base)
@@ -160,72 +149,9 @@ def weigh_hypotheses(
             model, one, paired, base.priors, settings, structure, predicted
         )
         tried = [first, *(search.ends(case) for case in cases[1:])]
+        tried = search.further(cases, tried)
         found.append(_weighed(one.label, cases, tried, settings))
     return tuple(found)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Search:
-    """What the searches of all hypotheses about a state have in common."""
-
-    known: JointValues | None
-    sought: Sequence[str] | None
-    start: Mapping[str, float]
-    surveyed: SurveyedStarts
-    settings: HypothesisSettings
-
-    def ends(
-        self, one: StructureHypothesis
-    ) -> tuple[StiffnessProblem, list[WeighedEnd]]:
-        """Search one hypothesis; its distinct ends with their evidence."""
-        problem = _posed(one, self.known, self.sought)
-        ends = [descend(problem, at) for at in self._points(problem, one.evidence)]
-        for _ in range(_EXCHANGES if one.evidence.modes is not None else 0):
-            last = min(ends, key=lambda end: end.chi2)
-            ends += [descend(problem, at) for at in exchanged_starts(problem, last)]
-            if min(end.chi2 for end in ends) > _BETTER * last.chi2:
-                break
-        distinct: list[WeighedEnd] = []
-        for end in sorted(ends, key=lambda end: end.chi2):
-            if not any(same_branch(end, other.end) for other in distinct):
-                distinct.append(weigh_end(problem, end, self.settings.largest_noise))
-        best = max(end.log_evidence for end in distinct)
-        return problem, [e for e in distinct if e.log_evidence > best - _NO_WEIGHT]
-
-    def _points(
-        self, problem: StiffnessProblem, evidence: StructureEvidence
-    ) -> list[FloatArray]:
-        points = []
-        if self.start:
-            own = [self.start.get(name, 1.0) for name in problem.names]
-            points.append(np.log(own))
-        if evidence.modes is not None or not points:
-            # FRFs need no pairing, which a search could miss, and are slow.
-            points += self.surveyed.best(problem, evidence, self.settings.starts)
-        return points
-
-
-def _posed(
-    one: StructureHypothesis, known: JointValues | None, sought: Sequence[str] | None
-) -> StiffnessProblem:
-    return pose_problem(
-        one.model,
-        [one.evidence],
-        known=_widened(known, len(one.model.names)),
-        sought=sought,
-        priors=one.priors,
-    )
-
-
-def _widened(known: JointValues | None, count: int) -> JointValues | None:
-    """Add the factors that a hypothesis frees to known values."""
-    if known is None or known.stiffness.size == count:
-        return known
-    more = count - known.stiffness.size
-    return JointValues(
-        np.concatenate([known.stiffness, np.ones(more)]),
-        np.concatenate([known.damping, np.zeros(more)]),
-    )
 
 
 def _named(start: Mapping[str, float], label: str) -> dict[str, float]:
@@ -259,8 +185,7 @@ def _weighed(
 ) -> StateHypotheses:
     """Turn evidence into probabilities, and mix the parameters."""
     logs = [
-        np.array([one.log_evidence for one in ends]) + np.log(case.prior) + case.chance
-        for case, (_, ends) in zip(cases, tried, strict=True)
+        log_weights(case, ends) for case, (_, ends) in zip(cases, tried, strict=True)
     ]
     top = max(float(one.max()) for one in logs)
     weights = [np.exp(one - top) for one in logs]
@@ -290,7 +215,7 @@ def _weighed(
     found.sort(key=lambda one: -one.probability)
     allowed = settings.largest_noise**2
     fits = any(
-        one.chi2 <= allowed * chi2_limit(_POOR_FIT, one.rows)
+        one.chi2 <= allowed * chi2_limit(POOR_FIT, one.rows)
         for one in found
         if one.survives
     )

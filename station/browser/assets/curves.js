@@ -21,6 +21,13 @@ const FONT = "13px system-ui, sans-serif";
 const TITLE = "600 13px system-ui, sans-serif";
 
 /**
+ * Return the numbers of an axis without separators, as everywhere else.
+ * @param {unknown} _
+ * @param {(number | null)[]} ticks
+ */
+const plain = (_, ticks) => ticks.map((tick) => (tick === null ? "" : String(Number(tick.toPrecision(10)))));
+
+/**
  * Make a plot in an element; it follows the width of the element.
  * @param {HTMLElement} parent
  * @param {{
@@ -40,7 +47,7 @@ export function curvePlot(parent, given) {
   parent.setAttribute("aria-label", given.label);
 
   const axis = (/** @type {string} */ label) => ({
-    label, font: FONT, labelFont: TITLE, labelSize: 20, size: 56,
+    label, font: FONT, labelFont: TITLE, labelSize: 20, size: 56, values: plain,
     stroke: () => colour("soft"),
     grid: { stroke: () => colour("grid"), width: 1 },
     ticks: { stroke: () => colour("line"), width: 1, size: 5 },

@@ -7,6 +7,7 @@ import { frfPlots, pairChoice } from "./frf_plots.js";
 import { shown } from "./numbers.js";
 
 const MOST_CELLS = 240;
+const HIT_HEADS = ["", "", "wide-only", "", "words", ""];
 const ESTIMATORS = /** @type {const} */ ([
   ["H1", "biased low by noise in the force"],
   ["H2", "biased high by noise in the response"],
@@ -66,13 +67,13 @@ deskScreen("FRFs", async (desk, place) => {
     const found = await desk.get("hits");
     fill(hits, el("table", {},
       el("thead", {}, el("tr", {}, ...["#", "point", "time [s]", "peak [N]", "verdict", ""].map((one, i) => (
-        el("th", i === 4 ? { class: "words" } : {}, one))))),
+        el("th", { class: HIT_HEADS[i] }, one))))),
       el("tbody", {}, ...found.map((/** @type {any} */ hit, /** @type {number} */ i) => {
         const good = hit.verdict === "ok";
         return el("tr", { class: good ? "" : "out" },
-          el("td", {}, i + 1), el("td", {}, hit.point), el("td", {}, shown(hit.time_s, 5)),
+          el("td", {}, i + 1), el("td", {}, hit.point), el("td", { class: "wide-only" }, shown(hit.time_s, 5)),
           el("td", {}, shown(hit.peak_n, 4)),
-          el("td", { class: "words" }, `${good ? "accepted" : hit.verdict}: ${hit.reason}`),
+          el("td", { class: "words reason" }, `${good ? "accepted" : hit.verdict}: ${hit.reason}`),
           el("td", {}, el("button", {
             type: "button", class: "small", "aria-label": `${good ? "Drop" : "Keep"} hit ${i + 1}`,
             click: () => desk.choose({

@@ -32,7 +32,7 @@ export class HitPlots {
       pulse: make(plotOf(this.pulseBox), { x: "time after the trigger [ms]", y: "force [N]", curves: one("force"), label: "Force pulses of the hits at this point over time" }),
       spectrum: make(plotOf(this.spectrumBox), { x: "frequency [Hz]", y: "force [dB]", yRange: [-60, 3], curves: one("force"), label: "Force spectra of the hits at this point" }),
       response: make(plotOf(this.responseBox), { x: "time after the trigger [ms]", y: "response", curves: one("response"), label: "Responses to the hits at this point over time" }),
-      frf: make(plotOf(this.frfBox), { x: "frequency [Hz]", y: "FRF [dB re 1 SI unit]", curves: one("FRF"), label: "Magnitude of the averaged FRF" }),
+      frf: make(plotOf(this.frfBox), { x: "frequency [Hz]", y: "FRF [dB]", curves: one("FRF"), label: "Magnitude of the averaged FRF" }),
       phase: make(plotOf(this.phaseBox), { x: "frequency [Hz]", y: "phase [deg]", yRange: [-185, 185], curves: one("phase"), label: "Phase of the averaged FRF" }),
       coherence: make(plotOf(this.coherenceBox), { x: "frequency [Hz]", y: "coherence [-]", yRange: [0, 1.02], curves: one("coherence"), label: "Coherence of the averaged FRF" }),
     };
@@ -47,7 +47,8 @@ export class HitPlots {
     const average = state.average;
     const curve = average?.frf?.[name] ?? [];
     const coherence = average?.coherence?.[name] ?? [];
-    title(this.frfBox, name ? `FRF of ${name}${curve.length && average?.good ? `, average of ${average.good} hit${average.good > 1 ? "s" : ""}` : ""}` : "FRF");
+    const unit = state.channels.find((/** @type {any} */ one) => one.name === name)?.si;
+    title(this.frfBox, name ? `FRF of ${name}${unit ? `, re 1 (${unit})/N` : ""}${curve.length && average?.good ? `, average of ${average.good} hit${average.good > 1 ? "s" : ""}` : ""}` : "FRF");
     const mean = average?.mean_coherence;
     title(this.coherenceBox, name ? `Coherence of ${name}${mean == null ? "" : `, mean over band and channels ${shown(mean, 3)}`}` : "Coherence");
     const [low, high] = average?.band?.length ? average.band : [0, 1];

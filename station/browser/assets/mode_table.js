@@ -31,7 +31,7 @@ export function modeTable(desk, chart) {
     ticked.clear();
     mark();
     if (!modes.length) return el("p", { class: "note" }, "No pole is chosen. Click one in the diagram.");
-    return el("table", {},
+    return el("table", { class: "modes" },
       el("caption", {}, "± one standard deviation. Tick two to merge them."),
       el("thead", {}, el("tr", {}, ...["", "f [Hz]", "damping [%]", "MPC", "by", ""].map((one, i) => (
         el("th", { class: HEADS[i] }, one))))),

@@ -4,7 +4,7 @@
 import { colour } from "./theme.js";
 
 /**
- * @param {HTMLCanvasElement} canvas square, drawn anew
+ * @param {HTMLCanvasElement} canvas square, drawn again
  * @param {{shape_re: number[], shape_im: number[]}} mode
  * @param {string[]} labels
  */
@@ -34,10 +34,8 @@ export function phaseScatter(canvas, mode, labels) {
   context.font = "13px system-ui, sans-serif";
   context.fillText("Re", size - 24, middle - 6);
   context.fillText("Im", middle + 6, 14);
-  const many = labels.length > 12;
-  mode.shape_re.forEach((re, i) => {
-    const x = middle + scale * re;
-    const y = middle - scale * mode.shape_im[i];
+  const points = mode.shape_re.map((re, i) => ({ x: middle + scale * re, y: middle - scale * mode.shape_im[i], i }));
+  for (const { x, y } of points) {
     context.strokeStyle = context.fillStyle = colour("curve-1");
     context.lineWidth = 1.6;
     context.beginPath();
@@ -47,11 +45,29 @@ export function phaseScatter(canvas, mode, labels) {
     context.beginPath();
     context.arc(x, y, 3.5, 0, 7);
     context.fill();
-    if (!many) {
-      context.fillStyle = colour("ink");
-      context.textAlign = x > middle + 0.5 * scale ? "right" : "left";
-      context.fillText(labels[i].split("@").pop() || labels[i], x + (x > middle + 0.5 * scale ? -7 : 7), y - 6 - 12 * (i % 2));
-    }
-  });
+  }
+  context.fillStyle = colour("ink");
+  for (const group of labels.length > 12 ? [] : together(points)) {
+    const { x, y } = group[0];
+    const right = x > middle + 0.5 * scale;
+    context.textAlign = right ? "right" : "left";
+    const words = group.map(({ i }) => labels[i].split("@").pop() || labels[i]).join(", ");
+    context.fillText(words, x + (right ? -7 : 7), y - 8);
+  }
   context.textAlign = "left";
+}
+
+/**
+ * Group points whose labels would lie on each other.
+ * @param {{x: number, y: number, i: number}[]} points
+ */
+function together(points) {
+  /** @type {(typeof points)[]} */
+  const groups = [];
+  for (const one of points) {
+    const near = groups.find(([first]) => Math.abs(first.x - one.x) < 40 && Math.abs(first.y - one.y) < 14);
+    if (near) near.push(one);
+    else groups.push([one]);
+  }
+  return groups;
 }

@@ -93,8 +93,20 @@ export class SettingPlots {
     const drawn = new Set(Object.values(LINES).flat().map((line) => line.name));
     const others = state.settings.filter((/** @type {any} */ one) => !drawn.has(one.name));
     fill(this.rest, ...(others.length ? others.map((/** @type {any} */ one) =>
-      el("p", { class: "note" }, el("b", {}, `${one.name} ${shown(one.value)}`), `  ${one.reason}`)) :
+      el("p", { class: "note" }, `${this.words(one.name)}: `, el("b", {}, `${shown(one.value)} ${this.symbol(one.name)}`), `  (${one.reason})`)) :
       [el("p", { class: "note" }, "ranges and windows follow from the trial hits")]));
+  }
+
+  /** @param {string} name of a setting without a line */
+  words(name) {
+    if (name === "decay_rate_per_s") return "decay rate of the exponential window";
+    return name.startsWith("range_") ? `range of ${name.slice("range_".length)}` : name;
+  }
+
+  /** @param {string} name of a setting without a line */
+  symbol(name) {
+    if (name === "decay_rate_per_s") return "1/s";
+    return this.state?.channels.find((/** @type {any} */ one) => `range_${one.name}` === name)?.si ?? "";
   }
 
   /** @param {string} name */

@@ -31,8 +31,8 @@ fill(
   el("div", { class: "grid wide" },
     el("section", { class: "panel across" }, el("h2", {}, "Channels"),
       el("div", { class: "scroll" }, el("table", { class: "lines" },
-        el("thead", {}, el("tr", {}, ...["channel", "level", "", "range", "point", "sensor", "TEDS", "calibrated"]
-          .map((name) => el("th", { scope: "col" }, name)))),
+        el("thead", {}, el("tr", {}, ...["channel", "level", "range", "point", "sensor", "TEDS", "calibrated"]
+          .map((name, i) => el("th", { scope: "col", class: i === 2 ? "" : "words" }, name)))),
         rows))),
     scopeBox),
   settings.box,
@@ -80,8 +80,9 @@ function channelRows() {
     const calibrated = sensor.calibrated ? `${sensor.calibrated}, due ${sensor.due}` : "–";
     return el("tr", {},
       el("td", {}, channel.name),
-      el("td", {}, el("meter", { min: 0, max: 1, high: 0.9, optimum: 0, value: 0, "aria-label": `Level of ${channel.name} over its range` })),
-      el("td", { class: "state" }),
+      el("td", { class: "words level" },
+        el("meter", { min: 0, max: 1, high: 0.9, optimum: 0, value: 0, "aria-label": `Level of ${channel.name} over its range` }),
+        el("span", { class: "state" })),
       el("td", {}, channel.range === null ? "–" : `${shown(channel.range)} ${channel.si}`),
       el("td", { class: "words" }, `${channel.point ?? ""} ${channel.direction ?? ""}`),
       el("td", { class: "words" }, `${channel.quantity}${sensor.serial ? `, no. ${sensor.serial}` : ""}`),

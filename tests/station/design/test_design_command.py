@@ -1,10 +1,12 @@
 """``jointbench design`` from the command line."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from jointbench.station.design import run_design
 from jointbench.station.main import app
 from jointbench.station.measure.plan import read_plan
 from jointbench.station.screen.exit_codes import (
@@ -147,3 +149,25 @@ def test_counts_of_sensors_are_checked_before_the_meshes(
     model.write_text(text.replace("sensors = 3", "sensors = 99"), encoding="utf-8")
     assert run(monkeypatch, model) == EXIT_USAGE
     assert "99 sensors" in " ".join(capsys.readouterr().err.split())
+
+
+def test_names_and_band_are_checked_before_the_meshes_are_reduced(
+    monkeypatch: pytest.MonkeyPatch,
+    model: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A parameter that is not there, and a band between two lines."""
+
+    def reduced(*_: object, **__: object) -> None:
+        raise AssertionError("the meshes were reduced")
+
+    monkeypatch.setattr(run_design, "reduce_structure", reduced)
+    text = model.read_text(encoding="utf-8")
+    wanted = text.replace("[design]\n", '[design]\nwanted = ["bed.moral"]\n')
+    model.write_text(wanted, encoding="utf-8")
+    assert run(monkeypatch, model) == EXIT_USAGE
+    assert "no 'bed.moral'" in " ".join(capsys.readouterr().err.split())
+    narrow = re.sub(r"(?m)^band = .*", 'band = ["300.1 Hz", "300.2 Hz"]', text)
+    model.write_text(narrow, encoding="utf-8")
+    assert run(monkeypatch, model) == EXIT_BAD_DATA
+    assert "no line between" in " ".join(capsys.readouterr().err.split())

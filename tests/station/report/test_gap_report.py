@@ -27,7 +27,7 @@ from jointbench.station.report.gap_sentences import (
     why_lost,
 )
 from jointbench.station.screen.page import render
-from jointbench.station.screen.page_parts import DataTable, Plot
+from jointbench.station.screen.page_parts import DataTable, ItemGroup, Plot
 
 VERDICTS = ("none", "named", "ambiguous", "mostly", "unknown")
 LATE = ("delay", "channel:a1", [4e-5])
@@ -227,7 +227,8 @@ def test_the_provenance_holds_the_policy_of_the_verdict() -> None:
     diagnosis = found("named")
     section = gap_report(diagnosis, title="made").sections[-1]
     assert section.anchor == "provenance"
-    table = next(item for item in section.items if isinstance(item, DataTable))
+    fold = next(item for item in section.items if isinstance(item, ItemGroup))
+    table = next(item for item in fold.items if isinstance(item, DataTable))
     names = [row[0] for row in table.rows]
     assert names == [setting.name for setting in settings_of(STANDARD)]
     page = render(gap_report(diagnosis, title="made"))

@@ -6,15 +6,24 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.analysis.structures.identification.hypotheses import (
     HypothesisKind,
     HypothesisSettings,
     hypotheses_of,
 )
+from jointbench.analysis.structures.identification.hypothesis_evidence import weigh_end
+from jointbench.analysis.structures.identification.hypothesis_search import (
+    POOR_FIT,
+    HypothesisSearch,
+    posed,
+)
+from jointbench.analysis.structures.identification.stiffness_descent import descend
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
 )
+from jointbench.analysis.structures.identification.surveyed_starts import survey_starts
 from jointbench.analysis.structures.identification.weigh_hypotheses import (
     StateHypotheses,
     weigh_hypotheses,
@@ -63,6 +72,24 @@ def test_a_missing_mode_is_named_and_the_joint_is_right_all_the_same(
         assert one.interval[1] is not None
         wide = np.log(one.interval[1] / one.interval[0])
         assert abs(np.log(one.value / true)) < wide
+
+
+def test_a_search_that_stopped_short_goes_on_until_something_fits(
+    reduced: ReducedModel, truth: JointValues
+) -> None:
+    """It had ended 20 % from the joint, and 20 standard deviations from the modes."""
+    settings = HypothesisSettings()
+    measured = frequencies(reduced, truth, missing=2)
+    cases = hypotheses_of(reduced, measured, np.arange(6), {}, settings)
+    right = [one for one in cases if one.modes == (2,) and one.left_out == 0.0]
+    problem = posed(right[0], None, None)
+    away = np.log(truth.stiffness) + np.array([0.2, -0.2, 0.2])
+    stopped = descend(problem, away, fixed=range(problem.size))
+    assert stopped.chi2 > 400.0
+    search = HypothesisSearch(None, None, {}, survey_starts(problem, 1, 0), settings)
+    tried = [(problem, [weigh_end(problem, stopped, settings.largest_noise)])]
+    found = search.further(right, tried)
+    assert min(one.end.chi2 for one in found[0][1]) < chi2_limit(POOR_FIT, 6)
 
 
 def test_modes_as_measured_need_no_other_hypothesis(
