@@ -52,10 +52,12 @@ class MeasuredState:
 
     Attributes:
         preload: on the joint [N], None where the session does not say.
+        session: name of its file.
         chain: from its hits to modes.
     """
 
     preload: float | None
+    session: str
     chain: ModalChain
 
 
@@ -77,7 +79,7 @@ def measured_states(
         if frf is not None:
             with working(f"fitting modes of {path.stem}"):
                 chain = frf_chain(frf, settings, StageRun())
-            found[path.stem] = MeasuredState(None, chain)
+            found[path.stem] = MeasuredState(None, path.stem, chain)
             continue
         columns, point = options.columns, options.point
         stored = read_recordings([path], columns=columns, point=point)
@@ -87,9 +89,8 @@ def measured_states(
             if len(groups) > 1:
                 label += "@" + ("none" if preload is None else f"{preload:g}N")
             with working(f"fitting modes of {label}"):
-                found[label] = MeasuredState(
-                    preload, judged_modes(recordings, settings, preload=preload)
-                )
+                chain = judged_modes(recordings, settings, preload=preload)
+                found[label] = MeasuredState(preload, path.stem, chain)
     return found
 
 
