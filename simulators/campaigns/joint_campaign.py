@@ -82,7 +82,7 @@ class JointCampaign:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PressedJoint:
+class TightenedJoint:
     """A joint at each torque, before anything is struck.
 
     Attributes:
@@ -119,7 +119,7 @@ def joint_campaign(
 
 def pressed_joint(
     seed: int, rng: np.random.Generator, rms: float = FACE_RMS
-) -> PressedJoint:
+) -> TightenedJoint:
     """Press two ground surfaces together at six torques.
 
     Args:
@@ -148,7 +148,7 @@ def pressed_joint(
         ).bolted
         for torque in TORQUES
     ]
-    return PressedJoint(design, heights, clean, np.array(scattered))
+    return TightenedJoint(design, heights, clean, np.array(scattered))
 
 
 def ground_surfaces(seed: int, rms: float = FACE_RMS) -> FloatArray:

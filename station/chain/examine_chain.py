@@ -97,7 +97,9 @@ def examine_chain(
         )
     contact_names = _contact_names(wanted)
     if describes_structure(wanted.model):
-        return _meshed(sessions, surfaces, wanted, contact_names, progress)
+        return _meshed(
+            sessions, surfaces, wanted.model, wanted.preload, contact_names, progress
+        )
     model = read_toml(wanted.model, BenchModel)
     table = bolted_joint(model, wanted.model)
     progress("reading surfaces")
@@ -130,17 +132,17 @@ def examine_chain(
 def _meshed(
     sessions: Sequence[Path],
     surfaces: Sequence[Path],
-    wanted: GapRequest,
+    path: Path,
+    preload: float | None,
     without: frozenset[str],
     progress: Progress,
 ) -> ExaminedChain:
     """Examine the chain of meshed bodies, whose joint is identified from modes."""
-    path = wanted.model or Path()
     table = bolted_joint(read_toml(path, StructureModel), path)
     progress("reading surfaces")
     heights = tuple(one for _, one in read_surfaces(list(surfaces), columns=None))
     progress("identifying the joint in every state")
-    own = read_identified(sessions, path, table, wanted.preload)
+    own = read_identified(sessions, path, table, preload)
     progress("fitting surfaces")
     surface = read_surfaces_of_chain(heights, table, own.states, progress)
     chain = Chain(surface, own.reading, own.states)

@@ -86,7 +86,7 @@ def read_identified(
         ", ".join(path.stem for path in sessions),
         joint_facts(table, table),
         np.array([_preload(label, done, preload) for label in labels]),
-        _assemblies(sessions, done, labels),
+        _assemblies(sessions, labels),
         QUANTITY[table.direction],
     )
     reading = StructureReading(_reading(done.result, list(kept.values())))
@@ -124,11 +124,13 @@ def _preload(label: str, done: IdentifiedStructure, preload: float | None) -> fl
     return found
 
 
-def _assemblies(
-    sessions: Sequence[Path], done: IdentifiedStructure, labels: Sequence[str]
-) -> IntArray:
+def _assemblies(sessions: Sequence[Path], labels: Sequence[str]) -> IntArray:
+    """Return the session of each state: labels are its name, or name@preload."""
     names = [path.stem for path in sessions]
-    own = [names.index(done.measured[label].session) for label in labels]
+    own = [
+        names.index(label if label in names else label.rpartition("@")[0])
+        for label in labels
+    ]
     return np.unique(own, return_inverse=True)[1].astype(np.int64)
 
 

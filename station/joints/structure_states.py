@@ -52,12 +52,10 @@ class MeasuredState:
 
     Attributes:
         preload: on the joint [N], None where the session does not say.
-        session: name of its file.
         chain: from its hits to modes.
     """
 
     preload: float | None
-    session: str
     chain: ModalChain
 
 
@@ -79,7 +77,7 @@ def measured_states(
         if frf is not None:
             with working(f"fitting modes of {path.stem}"):
                 chain = frf_chain(frf, settings, StageRun())
-            found[path.stem] = MeasuredState(None, path.stem, chain)
+            found[path.stem] = MeasuredState(None, chain)
             continue
         columns, point = options.columns, options.point
         stored = read_recordings([path], columns=columns, point=point)
@@ -89,8 +87,9 @@ def measured_states(
             if len(groups) > 1:
                 label += "@" + ("none" if preload is None else f"{preload:g}N")
             with working(f"fitting modes of {label}"):
-                chain = judged_modes(recordings, settings, preload=preload)
-                found[label] = MeasuredState(preload, path.stem, chain)
+                found[label] = MeasuredState(
+                    preload, judged_modes(recordings, settings, preload=preload)
+                )
     return found
 
 
