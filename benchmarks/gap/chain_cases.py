@@ -121,7 +121,7 @@ def expected(seed: int, link: str, effect: str) -> float:
     """
     joint = make_joint(seed, "" if link == "structure" else effect)
     if link != "structure":
-        return contact_margins(_as_read(joint))[0]
+        return contact_margins(as_read(joint))[0]
     rows = _rows(joint.data)
     stiffness = np.exp(rows.value)
     scale = _MIDDLE / float(np.median(stiffness))
@@ -138,7 +138,7 @@ def _rows(data: JointData) -> JointRows:
     return data.rows.chosen(own & ~data.states.falling[data.rows.state])
 
 
-def _as_read(joint: JointCampaign) -> JointCampaign:
+def as_read(joint: JointCampaign) -> JointCampaign:
     """Return a joint with the values that a chain reads, without scatter and noise."""
     rows = _rows(joint.clean)
     known = replace(rows, covariance=CHAIN.reading_sd**2 * np.eye(rows.value.size))

@@ -7,7 +7,9 @@
 
 Appends one JSON line for each chain, continues where it ended, and prints the counts:
 of all chains, and of those whose effect has an expected margin of 50 or more at its own
-link, with their 95 % Wilson intervals.
+link, with their 95 % Wilson intervals. After a right name every torque is predicted
+from the others, and so are the modes at it (`chain_held`); at the contact the hits on
+one body are predicted from those on the other.
 """
 
 import argparse
@@ -17,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from chain_cases import CONTACT, LUMPED, expected, make_case
+from chain_held import modes_inside, torques_inside, unseen_point
 from outcomes import NAMEABLE, share_text
 
 from jointbench.analysis.gap.chain.chain_diagnosis import diagnose_chain
@@ -49,7 +52,7 @@ def judged(seed: int) -> dict[str, object]:
             [c.name for c in found.several.causes],
             *map(list, found.several.rivals),
         ]
-    return {
+    row = {
         "seed": seed,
         "margin": expected(seed, link, effect) if link else 0.0,
         "link": link,
@@ -62,6 +65,12 @@ def judged(seed: int) -> dict[str, object]:
         "states": len(case.campaigns),
         "cpu_s": time.process_time() - start,
     }
+    if link and outcome(row) == ("right", "right"):
+        row["torques"] = torques_inside(found)
+        row["modes"] = modes_inside(found, structure)
+        if link == "contact":
+            row["point"] = unseen_point(case)
+    return row
 
 
 def outcome(row: dict) -> tuple[str, str]:
@@ -110,6 +119,17 @@ def main() -> None:
     print(f"one effect, margin >= {NAMEABLE:g}: {shares(strong)}")
     for effect in (*CONTACT, "scale_cut", *LUMPED):
         print(f"  {effect}: {shares([r for r in strong if r['effect'] == effect])}")
+    named = [row for row in strong if "torques" in row]
+    for what in ("torques", "modes"):
+        inside, count = (sum(row[what][k] for row in named) for k in (0, 1))
+        if count:
+            print(f"{what} within 95 % after a right name: {share_text(inside, count)}")
+    points = np.array([row["point"] for row in named if row.get("point")])
+    if points.size:
+        before, after = np.median(points, axis=0)
+        words = f"{before:.2g} by the law alone, {after:.2g} with what was named"
+        print(f"hits on the other body, residual over response: {words}")
+        print(f"  (medians of {len(points)})")
     seconds = [row["cpu_s"] for row in done]
     print(f"CPU s of a diagnosis: median {np.median(seconds):.1f}, {max(seconds):.1f}")
 

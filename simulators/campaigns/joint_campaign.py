@@ -35,7 +35,8 @@ _HITS = (
 FACE_POINTS = 256
 FACE_SPACING = 2e-6
 """Of the maps of the roughness of one surface [m]."""
-_FACE_RMS = 0.6e-6
+FACE_RMS = 0.6e-6
+"""Rms height of the roughness of one surface [m]."""
 _LONGEST = 80e-6
 """Wavelength beyond which the roughness of a surface is level [m]."""
 _COARSER = 2
@@ -80,6 +81,27 @@ class JointCampaign:
         freeze(self, "heights")
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class TightenedJoint:
+    """A joint at each torque, before anything is struck.
+
+    Attributes:
+        surfaces: design of bodies, bolts and waviness.
+        heights: roughness of the lower and the upper surface [m], (2, n, n).
+        stiffness: at each torque, cause by cause, without scatter.
+        scattered: of the joint as it was tightened [N/m], shape (n_torques,).
+    """
+
+    surfaces: FaceDesign
+    heights: FloatArray
+    stiffness: tuple[JointStiffness, ...]
+    scattered: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "heights", "scattered")
+
+
 def joint_campaign(
     seed: int, *, effects: tuple[HiddenEffect, ...] = ()
 ) -> JointCampaign:
@@ -90,6 +112,21 @@ def joint_campaign(
         effects: hidden in the structure.
     """
     rng = np.random.default_rng([seed, 43])
+    made = pressed_joint(seed, rng)
+    campaign = _hits(seed, rng, made.scattered, effects)
+    return JointCampaign(made.surfaces, made.heights, made.stiffness, campaign)
+
+
+def pressed_joint(
+    seed: int, rng: np.random.Generator, rms: float = FACE_RMS
+) -> TightenedJoint:
+    """Press two ground surfaces together at six torques.
+
+    Args:
+        seed: of the surfaces.
+        rng: of sizes and torques.
+        rms: height of the roughness of one surface [m].
+    """
     design = FaceDesign(
         side=0.080,
         thickness=0.012,
@@ -99,7 +136,7 @@ def joint_campaign(
         nut_factor=float(0.2 * np.exp(0.1 * rng.standard_normal())),
         seed=seed,
     )
-    heights = ground_surfaces(seed)
+    heights = ground_surfaces(seed, rms)
     both = heights.sum(axis=0)[::_COARSER, ::_COARSER]
     pressures = np.geomspace(*_PRESSURES[:2], int(_PRESSURES[2]))
     layer = rough_layer(both, _COARSER * FACE_SPACING, design.modulus, pressures)
@@ -111,19 +148,19 @@ def joint_campaign(
         ).bolted
         for torque in TORQUES
     ]
-    campaign = _hits(seed, rng, np.array(scattered), effects)
-    return JointCampaign(design, heights, clean, campaign)
+    return TightenedJoint(design, heights, clean, np.array(scattered))
 
 
-def ground_surfaces(seed: int) -> FloatArray:
+def ground_surfaces(seed: int, rms: float = FACE_RMS) -> FloatArray:
     """Return the roughness of the lower and the upper surface [m], shape (2, n, n).
 
     Args:
         seed: of the campaign.
+        rms: height of each [m].
     """
     return np.stack(
         [
-            random_face(FACE_POINTS, FACE_SPACING, _FACE_RMS, _LONGEST, 2 * seed + k)
+            random_face(FACE_POINTS, FACE_SPACING, rms, _LONGEST, 2 * seed + k)
             for k in (0, 1)
         ]
     )

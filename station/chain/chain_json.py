@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from jointbench.analysis.gap.chain.chain_records import ChainLink
+from jointbench.analysis.gap.chain.several_causes import Cause
 from jointbench.analysis.gap.model.diagnosis_record import diagnosis_json
 from jointbench.station.chain.examine_chain import ExaminedChain
 
@@ -40,11 +41,10 @@ def chain_json(done: ExaminedChain) -> Mapping[str, Any]:
         "causes": None
         if several is None
         else {
-            "factors": [
-                {"name": c.name, "factor": c.factor, "interval_95": [c.low, c.high]}
-                for c in several.causes
-            ],
-            "product": several.product,
+            "factors": [_factor(one) for one in several.causes],
+            "known": [_factor(one) for one in several.known],
+            "product": several.product.factor,
+            "product_interval_95": [several.product.low, several.product.high],
             "measured_over_law": several.measured,
             "rivals": [list(one) for one in several.rivals],
             "preload": float(s.preload[several.reference]),
@@ -67,4 +67,12 @@ def chain_json(done: ExaminedChain) -> Mapping[str, Any]:
         ],
         "joint": diagnosis_json(found.contact.found),
         "remarks": list(done.remarks),
+    }
+
+
+def _factor(one: Cause) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "factor": one.factor,
+        "interval_95": [one.low, one.high],
     }

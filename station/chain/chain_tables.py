@@ -42,7 +42,7 @@ def cause_rows(done: ExaminedChain) -> list[tuple[str, ...]]:
             f"{one.factor:.3g}",
             f"{one.low:.3g} to {one.high:.3g}",
         )
-        for one in several.causes
+        for one in (*several.causes, *several.known)
     ]
 
 
@@ -51,9 +51,11 @@ def product_words(done: ExaminedChain) -> str:
     several = done.found.several
     if several is None:
         return ""
+    product = several.product
     return (
-        f"product {several.product:.3g}; measured over law {several.measured:.3g}; "
-        f"not named {several.measured / several.product:.2f}"
+        f"product {product.factor:.3g} ({product.low:.3g} to {product.high:.3g}); "
+        f"measured over law {several.measured:.3g}; "
+        f"not named {several.measured / product.factor:.2f}"
     )
 
 

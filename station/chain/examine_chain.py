@@ -15,10 +15,7 @@ from jointbench.analysis.gap.chain.chain_diagnosis import (
     diagnose_chain,
 )
 from jointbench.analysis.gap.chain.locate_link import Chain
-from jointbench.analysis.gap.chain.lumped_structure import (
-    LumpedStructure,
-    read_lumped,
-)
+from jointbench.analysis.gap.chain.lumped_structure import read_lumped
 from jointbench.analysis.gap.chain.moved_quantities import (
     MovedModes,
     MovedResponse,
@@ -29,11 +26,17 @@ from jointbench.analysis.gap.chain.moved_quantities import (
 )
 from jointbench.analysis.gap.contact_bench.contact_catalogue import CONTACT_NAMES
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
+from jointbench.station.chain.identified_chain import (
+    moved_body_modes,
+    read_identified,
+)
 from jointbench.station.chain.read_chain import bolted_joint, read_states
 from jointbench.station.chain.surface_reading import read_surfaces_of_chain
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.gap_inputs import GapRequest
+from jointbench.station.joints.model_kind import describes_structure
+from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.schemas.bench_model import BenchModel
 
 Progress = Callable[[str], None]
@@ -47,7 +50,6 @@ class ExaminedChain:
         title: of the sessions.
         found: verdict on the chain.
         surfaces: as read.
-        structure: hits and fits; None for a structure of meshed bodies.
         stiffness: of every state, before and after.
         modes: of every state.
         response: of the state with the highest preload; None without hits.
@@ -57,7 +59,6 @@ class ExaminedChain:
     title: str
     found: ChainDiagnosis
     surfaces: tuple[Surface, ...]
-    structure: LumpedStructure | None
     stiffness: MovedStiffness
     modes: tuple[MovedModes, ...]
     response: MovedResponse | None
@@ -94,9 +95,13 @@ def examine_chain(
             "--surface needs the bench's model with a table [bolted_joint]; give it "
             "with --model bench.toml"
         )
+    contact_names = _contact_names(wanted)
+    if describes_structure(wanted.model):
+        return _meshed(
+            sessions, surfaces, wanted.model, wanted.preload, contact_names, progress
+        )
     model = read_toml(wanted.model, BenchModel)
     table = bolted_joint(model, wanted.model)
-    contact_names = _contact_names(wanted)
     progress("reading surfaces")
     heights = tuple(one for _, one in read_surfaces(list(surfaces), columns=None))
     progress("reading hits")
@@ -117,12 +122,35 @@ def examine_chain(
         measured.states.name,
         found,
         heights,
-        structure,
         stiffness,
         moved_modes(structure, stiffness),
         moved_response(structure, stiffness, int(np.argmax(measured.states.preload))),
         measured.remarks,
     )
+
+
+def _meshed(
+    sessions: Sequence[Path],
+    surfaces: Sequence[Path],
+    path: Path,
+    preload: float | None,
+    without: frozenset[str],
+    progress: Progress,
+) -> ExaminedChain:
+    """Examine the chain of meshed bodies, whose joint is identified from modes."""
+    table = bolted_joint(read_toml(path, StructureModel), path)
+    progress("reading surfaces")
+    heights = tuple(one for _, one in read_surfaces(list(surfaces), columns=None))
+    progress("identifying the joint in every state")
+    own = read_identified(sessions, path, table, preload)
+    progress("fitting surfaces")
+    surface = read_surfaces_of_chain(heights, table, own.states, progress)
+    chain = Chain(surface, own.reading, own.states)
+    found = diagnose_chain(chain, without=without, progress=progress)
+    stiffness = moved_stiffness(found)
+    modes = moved_body_modes(own, stiffness)
+    name = own.states.name
+    return ExaminedChain(name, found, heights, stiffness, modes, None, own.remarks)
 
 
 def _contact_names(wanted: GapRequest) -> frozenset[str]:

@@ -18,6 +18,7 @@ from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.station.gap.joint_state_files import joint_facts
 from jointbench.station.gap.session_hits import judged_recordings, with_preloads
+from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.bolted_joint_table import BoltedLinkTable
 from jointbench.station.schemas.gap_model import nominal_parameters
@@ -49,7 +50,7 @@ class MeasuredStates:
     remarks: tuple[str, ...]
 
 
-def bolted_joint(model: BenchModel, path: Path) -> BoltedLinkTable:
+def bolted_joint(model: BenchModel | StructureModel, path: Path) -> BoltedLinkTable:
     """Return the bolted joint of a model.
 
     Args:

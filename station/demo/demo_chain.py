@@ -142,7 +142,7 @@ def _compare(done: ExaminedChain) -> tuple[TruthComparison, ...]:
     right = found.links == (ChainLink.CONTACT,) and len(found.location.places) == 1
     off = None
     if several is not None:
-        off = float(np.log2(several.product / several.measured))
+        off = float(np.log2(several.product.factor / several.measured))
     return (
         compare_value(
             "link[contact]", "-", 1.0, float(right), limit=0.0, absolute=True

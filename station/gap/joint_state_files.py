@@ -199,6 +199,10 @@ def joint_facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:
     if joint.head_diameter is not None and joint.clamped_length is not None:
         width = joint.head_diameter + joint.clamped_length * math.tan(CONE_ANGLE)
         cone = 0.5 * width
+    bolts = None
+    if joint.bolt_length is not None:
+        section = math.pi * joint.diameter**2 / 4.0
+        bolts = joint.bolts * joint.bolt_modulus * section / joint.bolt_length
     return JointFacts(
         bolts=joint.bolts,
         diameter=joint.diameter,
@@ -212,4 +216,5 @@ def joint_facts(joint: BoltedJointTable, bodies: BodiesTable) -> JointFacts:
         rocking_radius=joint.rocking_radius,
         bolt_radius=joint.bolt_radius,
         cone_radius=cone,
+        bolt_stiffness=bolts,
     )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The joints of a meshed structure from sessions: the work, without the output."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,6 +76,7 @@ class IdentifiedStructure:
         structure: bodies and joints on their meshes.
         reduced: the same in few coordinates.
         result: parameters with intervals, solutions and checks.
+        measured: what the sessions say, by state.
         theory: each joint beside the contact law; empty without a table [contact].
         hypotheses: what else could explain each state; empty if not asked for.
     """
@@ -83,6 +84,7 @@ class IdentifiedStructure:
     structure: Structure
     reduced: ReducedModel
     result: StructureIdentification
+    measured: Mapping[str, MeasuredState]
     theory: tuple[TheoryRow, ...]
     hypotheses: tuple[StateHypotheses, ...] = ()
 
@@ -117,6 +119,7 @@ def identified_structure(
         structure = structure_of(settings, model.parent)
     check_request(settings, structure, sessions)
     surface = _surface(settings, model, surfaces, sessions)
+    band = band or settings.identify.band_words
     measured = measured_states(sessions, band, options or FrfOptions())
     check_measured(settings, structure, measured)
     preloads = _preloads(settings, measured)
@@ -136,7 +139,7 @@ def identified_structure(
         )
     rows = _theory(settings, surface, preloads, result)
     tried = _hypotheses(settings, structure, reduced, evidence, result)
-    return IdentifiedStructure(structure, reduced, result, rows, tried)
+    return IdentifiedStructure(structure, reduced, result, measured, rows, tried)
 
 
 def _hypotheses(

@@ -47,6 +47,7 @@ from jointbench.station.joints.structure_tables import (
     SolidTable,
     SupportTable,
 )
+from jointbench.station.schemas.bolted_joint_table import BoltedLinkTable
 
 
 class StructureModel(StrictTable):
@@ -63,6 +64,7 @@ class StructureModel(StrictTable):
     measured: MeasuredTable | None = None
     identify: IdentifyTable = IdentifyTable()
     contact: TheoryTable | None = None
+    bolted_joint: BoltedLinkTable | None = None
     pressure: PressureTable | None = None
 
     @model_validator(mode="after")
@@ -75,6 +77,12 @@ class StructureModel(StrictTable):
                 )
         if self.contact is not None:
             joint_of(self.contact, self.parametric_joints)
+        own = self.bolted_joint
+        if own is not None and own.link not in self.parametric_joints:
+            raise ValueError(
+                f"bolted_joint.link is {own.link!r}; joints that are not glued are "
+                f"{self.parametric_joints}"
+            )
         return self
 
     @property

@@ -115,11 +115,13 @@ class IdentifyTable(StrictTable):
     `gain_sd` is that of the gain of a sensor, `force_sd` that of the force at a point
     (aim, direction), which FRFs have in common;
     `priors` hold stiffness and relative standard deviation of a joint's direction;
+    `band` is that of the modes, where the command states none;
     `known` holds the stiffness of the directions that are not `sought`; `hypotheses`
     tries what else could explain the modes.
     """
 
     data: Literal["frequencies", "modes", "frf"] = "modes"
+    band: tuple[_Frequency, _Frequency] | None = None
     modes: Annotated[int, Field(gt=0, le=200)] | None = None
     sought: tuple[str, ...] | None = None
     known: dict[str, Annotated[float, with_unit("stiffness"), Field(gt=0)]] = Field(
@@ -136,6 +138,11 @@ class IdentifyTable(StrictTable):
     mass_sd: dict[str, _Share] = Field(default_factory=dict)
     priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)
     hypotheses: bool = False
+
+    @property
+    def band_words(self) -> str | None:
+        """The band as `--band` takes it."""
+        return None if self.band is None else f"{self.band[0]}:{self.band[1]}"
 
 
 class DesignTable(StrictTable):

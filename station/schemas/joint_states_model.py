@@ -99,6 +99,8 @@ class BoltedJointTable(StrictTable):
     bolt_radius: Length | None = None
     head_diameter: Length | None = None
     clamped_length: Length | None = None
+    bolt_length: Length | None = None
+    bolt_modulus: Pressure = 2.1e11
 
 
 class BodiesTable(StrictTable):

@@ -73,6 +73,7 @@ torque_scatter = "4 %"
 reassembly = "20 %"
 head_diameter = "{head:g} mm"
 clamped_length = "{clamped:g} mm"
+bolt_length = "{long:g} mm"
 bolt_radius = "{place:.4g} mm"
 rocking_radius = "{rocking:.4g} mm"
 modulus = "55 GPa"
@@ -92,12 +93,25 @@ def blocks_text(design: CampaignDesign, surfaces: FaceDesign) -> str:
     Returns:
         TOML with a table [bolted_joint].
     """
+    return model_text(design) + joint_table(surfaces)
+
+
+def joint_table(surfaces: FaceDesign) -> str:
+    """Write what an operator would know of the joint between two blocks.
+
+    Args:
+        surfaces: sizes; waviness and true nut factor stay out.
+
+    Returns:
+        The table [bolted_joint].
+    """
     mm = 1e3
-    return model_text(design) + BLOCKS.format(
+    return BLOCKS.format(
         diameter=mm * surfaces.bolt_diameter,
         area=1e4 * surfaces.side**2,
         head=mm * surfaces.head_diameter,
         clamped=2 * mm * surfaces.thickness,
+        long=mm * surfaces.bolt_length,
         place=mm * surfaces.bolt_place,
         rocking=mm * surfaces.side / 12**0.5,
     )

@@ -6,6 +6,7 @@ needs more than one effect of the contact bench.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -56,6 +57,9 @@ class SeveralCauses:
         fit: with all effects.
         acceptance: of that fit.
         causes: in the order in which they act.
+        known: what is there whatever is missing: waves longer than what was
+            measured, bolts; only what the base of the bench has.
+        product: of the factors of causes and what is known.
         rest: factor of what the base took up: inputs of the law, assemblies.
         measured: stiffness over that of the law with nominal inputs [-].
         reference: index of the state at which the factors hold.
@@ -67,16 +71,13 @@ class SeveralCauses:
     fit: Fit
     acceptance: Acceptance
     causes: tuple[Cause, ...]
+    known: tuple[Cause, ...]
+    product: Cause
     rest: float
     measured: float
     reference: int
     held: HeldOutTorques
     rivals: tuple[tuple[str, ...], ...]
-
-    @property
-    def product(self) -> float:
-        """Product of the factors of the causes [-]."""
-        return float(np.prod([one.factor for one in self.causes]))
 
 
 def add_causes(outcome: SearchOutcome, progress: Progress) -> SeveralCauses | None:
@@ -187,20 +188,30 @@ def _explained(
     draws = _draws(fit)
     factors = np.array([_factors(bench, fit, x, order, reference) for x in draws])
     names = [fit.candidates[k].effect.name for k in order]
+    factors = np.column_stack([factors, np.prod(factors, axis=1)])
     low, high = np.quantile(factors[1:], [0.025, 0.975], axis=0)
-    causes = tuple(
+    *found, product = (
         Cause(name, float(f), float(a), float(b))
-        for name, f, a, b in zip(names, factors[0], low, high, strict=True)
+        for name, f, a, b in zip(
+            [*_before(bench), *names, *_after(bench), "product"],
+            factors[0],
+            low,
+            high,
+            strict=True,
+        )
     )
-    nominal = _stiffness(bench, np.zeros(fit.n_base), fit, (), reference)
-    base = _stiffness(bench, fit.base, fit, (), reference)
+    alone = _alone(bench, np.zeros(fit.n_base))
+    nominal = _stiffness(bench, alone, fit, (), reference)
+    base = _stiffness(bench, _alone(bench, fit.base), fit, (), reference)
     rows = bench.data.rows
     own = np.flatnonzero(rows.state == reference)[0]
     return SeveralCauses(
         bench,
         fit,
         acceptance,
-        causes,
+        tuple(one for one in found if one.name in names),
+        tuple(one for one in found if one.name not in names),
+        product,
         base / nominal,
         float(np.exp(rows.value[own])) / nominal,
         reference,
@@ -225,16 +236,39 @@ def _draws(fit: Fit) -> FloatArray:
 def _factors(
     bench: ContactBench, fit: Fit, x: FloatArray, order: IntArray, state: int
 ) -> list[float]:
-    """Return the factor of each effect on the stiffness of a state, in order."""
-    base = x[: fit.n_base]
+    """Return the factors of what is known, effects between them, as they act."""
+    base = _alone(bench, x[: fit.n_base])
     terms = split(x, fit.n_base, fit.candidates)
-    before = _stiffness(bench, base, fit, (), state)
-    found = []
-    for count in range(1, order.size + 1):
-        kept = tuple(int(k) for k in order[:count])
-        after = _stiffness(bench, base, fit, kept, state, terms)
-        found.append(after / before)
-        before = after
+    kept: tuple[int, ...] = ()
+    at = [_stiffness(bench, base, fit, kept, state, terms)]
+    for one in _before(bench).values():
+        base[one] = x[one]
+        at.append(_stiffness(bench, base, fit, kept, state, terms))
+    for effect in order:
+        kept = (*kept, int(effect))
+        at.append(_stiffness(bench, base, fit, kept, state, terms))
+    for one in _after(bench).values():
+        base[one] = x[one]
+        at.append(_stiffness(bench, base, fit, kept, state, terms))
+    return [later / earlier for earlier, later in pairwise(at)]
+
+
+def _before(bench: ContactBench) -> dict[str, int]:
+    """Return what is known to act on the contact, with its coordinate."""
+    at = bench.layout.waves
+    return {"unmeasured_waves": at} if at >= 0 else {}
+
+
+def _after(bench: ContactBench) -> dict[str, int]:
+    """Return what is known to act in parallel, with its coordinate."""
+    at = bench.layout.bolts
+    return {"bolts": at} if at >= 0 else {}
+
+
+def _alone(bench: ContactBench, base: FloatArray) -> FloatArray:
+    """Return base coordinates of the contact law alone."""
+    found = base.copy()
+    found[[*_before(bench).values(), *_after(bench).values()]] = -np.inf
     return found
 
 

@@ -200,6 +200,7 @@ class ContactBench:
         joint = replace(joint, table=self._damped(base, joint))
         for entry, values in acts[EffectPlace.DAMPING]:
             joint = replace(joint, table=entry.act(values, joint))
+        joint = replace(joint, table=self._bolted(base, joint))
         for entry, values in acts[EffectPlace.VALUE]:
             joint = replace(joint, table=joint.table * np.exp(entry.act(values, joint)))
         return joint
@@ -211,6 +212,7 @@ class ContactBench:
         layout, states = self.layout, self.data.states
         log_k = self.law.log_stiffness(joint.log_preload, base[: layout.law])
         turn = turn + base[layout.factor + 1] * (joint.log_preload - joint.middle)
+        turn = turn + self._waves(base)
         common = turn + base[layout.factor] + base[layout.assembly + states.assembly]
         log_lever = 2.0 * np.log(self.data.facts.rocking_radius or 1.0)
         table = np.zeros((len(QUANTITIES), states.torque.size))
@@ -238,6 +240,31 @@ class ContactBench:
                 )
                 loss = CONTACT.loss_factor * np.exp(own)
                 table[row] = loss * table[stiffness] / joint.omega
+        return table
+
+    def _waves(self, base: FloatArray) -> float:
+        """Return the change of ln k by waves that the surfaces were too short to show.
+
+        Until they close they are heights like all others.
+
+        Source:
+            Persson 2007, Phys. Rev. Lett. 99, 125502: k = p/u_0 with u_0 in proportion
+            to the rms height of all wavelengths.
+        """
+        at, rough = self.layout.waves, self.law.law.roughness_alone
+        if at < 0 or rough is None:
+            return 0.0
+        height = self.layout.nominal[at] * np.exp(base[at])
+        return -0.5 * float(np.log1p((height / rough) ** 2))
+
+    def _bolted(self, base: FloatArray, joint: LoadedJoint) -> FloatArray:
+        """Add the bolts, in parallel with contact and bodies (VDI 2230, sec. 5.1)."""
+        facts, at = self.data.facts, self.layout.bolts
+        if at < 0 or facts.bolt_stiffness is None:
+            return joint.table
+        table, own = joint.table.copy(), facts.bolt_stiffness * np.exp(base[at])
+        table[0] += own
+        table[3] += own * (facts.bolt_radius or 0.0) ** 2
         return table
 
     def predict(self, base: FloatArray, terms: Sequence[Term]) -> FloatArray:
@@ -315,7 +342,7 @@ def make_contact_bench(
     return ContactBench(
         data=data,
         law=base_law,
-        layout=contact_layout(data, law.parameters),
+        layout=contact_layout(data, law),
         entries=entries,
         candidates=tuple(effects[: len(catalogue)]),
         probes=tuple(effects[len(catalogue) :]),

@@ -16,7 +16,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     ContactQuantity,
     JointData,
 )
-from jointbench.analysis.gap.contact_bench.preload_law import LawParameter
+from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
 
 _RATIOS = (
     (ContactQuantity.TANGENTIAL, "tangential_ratio"),
@@ -42,6 +42,8 @@ class ContactLayout:
         ratio: coordinate of each quantity's ratio to the law, -1 for none, (6,).
         nut: coordinate of the nut factor, -1 for none.
         factor: coordinate of the factor of the law, followed by its exponent.
+        bolts: coordinate of the stiffness of the bolts, -1 for none.
+        waves: coordinate of the height of waves that were not measured, -1 for none.
         assembly: first coordinate of the assemblies.
         own: first coordinate of each quantity's deviation by assembly, -1 for none,
             shape (6,).
@@ -56,6 +58,8 @@ class ContactLayout:
     ratio: IntArray
     nut: int
     factor: int
+    bolts: int
+    waves: int
     assembly: int
     own: IntArray
     state: int
@@ -82,19 +86,18 @@ class _Coordinates:
         return len(self.names) - 1
 
 
-def contact_layout(
-    data: JointData, parameters: tuple[LawParameter, ...]
-) -> ContactLayout:
+def contact_layout(data: JointData, law: PreloadLaw) -> ContactLayout:
     """Return the base coordinates of a joint.
 
     Args:
         data: its measured quantities and states decide what is there.
-        parameters: of the law; those known exactly get a very small sd.
+        law: its inputs and accuracy; inputs known exactly get a very small sd.
     """
+    parameters = law.parameters
     rows, facts = _Coordinates([], [], [], []), data.facts
     for p in parameters:
         rows.add(p.name, p.unit, p.value, p.log_sd)
-    factor = rows.add("law_factor", "-", 1.0, CONTACT.law_factor_sd)
+    factor = rows.add("law_factor", "-", 1.0, law.factor_sd)
     rows.add("law_power", "-", 1.0, CONTACT.law_power_sd)
     ratio = np.full(len(QUANTITIES), -1)
     for quantity, name in _RATIOS:
@@ -108,6 +111,12 @@ def contact_layout(
     nut = -1
     if data.states.by_torque.any():
         nut = rows.add("nut_factor", "-", facts.nut_factor, facts.nut_factor_sd)
+    bolts = -1
+    if facts.bolt_stiffness is not None:
+        bolts = rows.add("bolts", "N/m", facts.bolt_stiffness, CONTACT.bolts_sd)
+    waves = -1
+    if law.roughness_alone is not None:
+        waves = rows.add("wave_height", "m", CONTACT.wave_height, CONTACT.wave_sd)
     assembly, own = _assemblies(rows, data)
     state = len(rows.names)
     for k, measured in enumerate(~data.states.by_torque):
@@ -122,6 +131,8 @@ def contact_layout(
         ratio,
         nut,
         factor,
+        bolts,
+        waves,
         assembly,
         own,
         state,

@@ -101,6 +101,43 @@ class ContactBenchSettings:
         "prior sd of ln(stiffness of the joint over that of the law)",
         "laws of one surface differ by a factor of 1.5 to 2 (docs/contact-oracle.md)",
     )
+    applying_factor_sd: float = numerical(
+        0.1,
+        "-",
+        "the same of a law of measured surfaces whose range holds every preload",
+        "sd of ln ratio 0.083, mean ratio 0.959 (docs/contact-measured-surfaces.md)",
+    )
+    outside_factor_sd: float = numerical(
+        0.3,
+        "-",
+        "the same where its range does not hold every preload",
+        "Persson outside its range: 0.297 (docs/contact-measured-surfaces.md)",
+    )
+    bolts_sd: float = numerical(
+        0.15,
+        "-",
+        "prior sd of ln of the stiffness of the bolts by their length and diameter",
+        "head, nut and thread lengthen or thin a bolt by 10 to 20 %: VDI 2230, "
+        "sec. 5.1",
+    )
+    wave_height: float = numerical(
+        1.5e-6,
+        "m",
+        "nominal rms height of the waves of both surfaces that were not measured",
+        "waviness of ground and milled surfaces: 0.4 to 6 um",
+    )
+    wave_sd: float = numerical(
+        0.7,
+        "-",
+        "prior sd of ln of that height",
+        "0.4 to 6 um within 2 sd",
+    )
+    wave_share: float = numerical(
+        0.25,
+        "of the side",
+        "length over which surfaces must be measured to show their waves",
+        "heights of waves grow with their length, so that the longest ones count",
+    )
     law_power_sd: float = numerical(
         0.02,
         "-",

@@ -149,6 +149,8 @@ class JointFacts:
             axis [m]; used with rocking stiffness only.
         bolt_radius: that of the pressure cones [m].
         cone_radius: radius of one pressure cone at the contact surface [m], or None.
+        bolt_stiffness: of all bolts along their axes, in parallel with the contact
+            [N/m]; None where their length is not stated.
     """
 
     bolts: int
@@ -163,6 +165,7 @@ class JointFacts:
     rocking_radius: float | None = None
     bolt_radius: float | None = None
     cone_radius: float | None = None
+    bolt_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         """Check that every number is possible."""

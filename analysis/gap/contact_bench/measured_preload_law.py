@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The laws of a measured surface as the base of the contact bench."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,12 +43,17 @@ class MeasuredPreloadLaw:
         spline: ln k_n and its slope by each parameter over ln P.
         poisson: Poisson ratio of the bodies [-].
         name: of the law.
+        factor_sd: of ln(stiffness of the contact over that of the law) [-].
+        roughness_alone: rms height [m] where the surfaces were measured over too
+            short a length to show their waves, else None.
     """
 
     parameters: tuple[LawParameter, ...]
     spline: CubicSpline
     poisson: float
     name: str
+    factor_sd: float
+    roughness_alone: float | None
 
     def log_stiffness(
         self, log_preload: FloatArray, coordinates: FloatArray
@@ -75,7 +81,8 @@ def measured_preload_law(
     Raises:
         BadData: the law predicts no stiffness at these preloads.
     """
-    chosen = law or applying_law(case, log_range)
+    shares = applying_shares(case, log_range)
+    chosen = law or max(_ORDER, key=lambda one: (shares[one], -_ORDER.index(one)))
     low, high = log_range
     grid = np.linspace(
         low - CONTACT.law_margin[0], high + CONTACT.law_margin[1], CONTACT.law_points
@@ -102,13 +109,22 @@ def measured_preload_law(
         LawParameter("shortest_wave", "m", case.surface.shortest, 0.0, per_cut=1.0),
     )
     columns = np.stack([drawn[0], *shapes, by_modulus, by_cut], axis=-1)
+    applies = shares[chosen] == 1.0
+    short = case.surface.longest < CONTACT.wave_share * math.sqrt(case.area)
     return MeasuredPreloadLaw(
-        parameters, CubicSpline(grid, columns), poisson, chosen.value
+        parameters,
+        CubicSpline(grid, columns),
+        poisson,
+        chosen.value,
+        CONTACT.applying_factor_sd if applies else CONTACT.outside_factor_sd,
+        case.height if short else None,
     )
 
 
-def applying_law(case: MeasuredCase, log_range: tuple[float, float]) -> MeasuredLaw:
-    """Return the law whose range holds most of the preloads.
+def applying_shares(
+    case: MeasuredCase, log_range: tuple[float, float]
+) -> dict[MeasuredLaw, float]:
+    """Return the share of the preloads that the range of each law holds.
 
     Args:
         case: surfaces, materials, apparent area.
@@ -116,7 +132,7 @@ def applying_law(case: MeasuredCase, log_range: tuple[float, float]) -> Measured
     """
     pressure = np.exp(np.linspace(*log_range, CONTACT.range_points)) / case.area
     curves = {c.law: c for c in predict_measured(case, pressure)}
-    return max(_ORDER, key=lambda law: (_share(curves[law]), -_ORDER.index(law)))
+    return {law: _share(curves[law]) for law in _ORDER}
 
 
 def _share(curve: LawCurve) -> float:

@@ -50,6 +50,19 @@ class PreloadLaw(Protocol):
         """Inputs with their uncertainty."""
         ...
 
+    @property
+    def factor_sd(self) -> float:
+        """Sd of ln(stiffness of the contact over that of the law) [-]."""
+        ...
+
+    @property
+    def roughness_alone(self) -> float | None:
+        """Rms height of measured surfaces too short to show their waves [m], or None.
+
+        None also for a law of numbers, which makes no statement of waves.
+        """
+        ...
+
     def log_stiffness(
         self, log_preload: FloatArray, coordinates: FloatArray
     ) -> FloatArray:

@@ -35,12 +35,16 @@ class PowerPreloadLaw:
         reference: P_ref [N].
         poisson: Poisson ratio of the bodies [-].
         name: of the law.
+        factor_sd: of ln(stiffness of the contact over that of the law) [-].
+        roughness_alone: None: a law of numbers makes no statement of waves.
     """
 
     parameters: tuple[LawParameter, ...]
     reference: float
     poisson: float
     name: str = "power"
+    factor_sd: float = CONTACT.law_factor_sd
+    roughness_alone: float | None = None
 
     def log_stiffness(
         self, log_preload: FloatArray, coordinates: FloatArray
@@ -62,6 +66,8 @@ class LinearPreloadLaw:
         parameters: ``rms_height`` [m] and ``share`` u_0/h_rms [-].
         poisson: Poisson ratio of the bodies [-].
         name: of the law.
+        factor_sd: of ln(stiffness of the contact over that of the law) [-].
+        roughness_alone: None: a law of numbers makes no statement of waves.
 
     Source:
         Persson 2007, Phys. Rev. Lett. 99, 125502: p = p_0 exp(-u/u_0), where u_0 is 0.4
@@ -71,6 +77,8 @@ class LinearPreloadLaw:
     parameters: tuple[LawParameter, ...]
     poisson: float
     name: str = "linear"
+    factor_sd: float = CONTACT.law_factor_sd
+    roughness_alone: float | None = None
 
     def log_stiffness(
         self, log_preload: FloatArray, coordinates: FloatArray
@@ -91,6 +99,8 @@ class AsperityPreloadLaw:
         area: apparent area [m^2].
         poisson: Poisson ratio of the bodies [-].
         name: of the law.
+        factor_sd: of ln(stiffness of the contact over that of the law) [-].
+        roughness_alone: None: a law of numbers makes no statement of waves.
 
     Source:
         `greenwood_williamson` of the laws of measured surfaces.
@@ -100,6 +110,8 @@ class AsperityPreloadLaw:
     area: float
     poisson: float
     name: str = "asperities"
+    factor_sd: float = CONTACT.law_factor_sd
+    roughness_alone: float | None = None
 
     def log_stiffness(
         self, log_preload: FloatArray, coordinates: FloatArray
@@ -133,12 +145,16 @@ class FractalPreloadLaw:
         model: name in `CONTACT_MODELS`.
         material: modulus and Poisson ratio.
         name: of the law.
+        factor_sd: of ln(stiffness of the contact over that of the law) [-].
+        roughness_alone: None: a law of numbers makes no statement of waves.
     """
 
     parameters: tuple[LawParameter, ...]
     model: str
     material: ContactMaterial
     name: str = "fractal"
+    factor_sd: float = CONTACT.law_factor_sd
+    roughness_alone: float | None = None
 
     def log_stiffness(
         self, log_preload: FloatArray, coordinates: FloatArray

@@ -9,6 +9,7 @@ from joint_campaigns import FACTS, LAW, joint
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.contact_bench.contact_bench import make_contact_bench
 from jointbench.analysis.gap.contact_bench.contact_catalogue import CONTACT_NAMES
+from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.joint_states import JointRows
 from jointbench.analysis.gap.contact_bench.preload_laws import (
     AsperityPreloadLaw,
@@ -106,3 +107,24 @@ def test_unknown_names_and_impossible_values_are_refused() -> None:
             0.3,
         ).log_stiffness(np.zeros(1), np.zeros(4))
     assert len(set(CONTACT_NAMES)) == len(CONTACT_NAMES) == 15
+
+
+def test_bolts_of_stated_length_bear_in_parallel_along_their_axes() -> None:
+    """1e8 N/m beside the contact's normal stiffness; the tangential one is unmoved."""
+    data = joint(seed=4)
+    bolted = replace(data, facts=replace(data.facts, bolt_stiffness=1e8))
+    plain, held = make_contact_bench(data, LAW), make_contact_bench(bolted, LAW)
+    before = plain.joint(np.zeros(plain.base_sd.size), ()).table
+    after = held.joint(np.zeros(held.base_sd.size), ()).table
+    np.testing.assert_allclose(after[0] - before[0], 1e8)
+    np.testing.assert_allclose(after[1], before[1])
+
+
+def test_waves_that_no_surface_showed_count_as_heights() -> None:
+    """As high as the roughness they take the stiffness down by the root of two."""
+    data = joint(seed=5)
+    short = replace(LAW, roughness_alone=CONTACT.wave_height)
+    plain, waved = make_contact_bench(data, LAW), make_contact_bench(data, short)
+    before = plain.predict(np.zeros(plain.base_sd.size), ())
+    after = waved.predict(np.zeros(waved.base_sd.size), ())
+    np.testing.assert_allclose(before - after, 0.5 * np.log(2.0))
