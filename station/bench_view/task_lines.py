@@ -85,7 +85,10 @@ def _task(state: SessionState) -> tuple[str, str, str]:
     """Return the task in block letters and in words, and its style."""
     if state.ended is not None:
         how = "interrupted" if state.ended.interrupted else "all is recorded"
-        return "END", f"the recording has ended: {how}", "bold"
+        words = f"the recording has ended: {how}"
+        if state.finishing is not None:
+            words += f"; {100 * state.finishing:.0f} % of the session file is written"
+        return "END", words, "bold"
     if state.begun is None and state.last < 0:
         return "WAIT", "the device and the session file are opened", "bold"
     if state.open_loops:

@@ -14,6 +14,7 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
+    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -57,6 +58,7 @@ Event = (
     | CableChanged
     | SamplesMissing
     | SessionEnded
+    | FileFinishing
     | SessionBegun
     | HitAveraged
     | GainForecast
@@ -73,7 +75,7 @@ _KINDS: Mapping[str, type[Event]] = {
         *(HitJudged, VerdictChanged, SettingProposed, CheckDone, BoltRead),
         *(RunBegun, Asked, ConditionDone, Said, Warned, CableChanged),
         *(SamplesMissing, SessionEnded, SessionBegun, HitAveraged, CommandAnswered),
-        *(GainForecast, PreloadRead),
+        *(GainForecast, PreloadRead, FileFinishing),
         *(NoteAdded, PauseChanged, WarningsSeen, ConditionReopened, BoltAsked),
     )
 }

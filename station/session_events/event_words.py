@@ -6,6 +6,7 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
+    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -70,6 +71,8 @@ def _words(event: Event) -> str:
             return channels
         case SamplesMissing(what=what, samples=samples, words=words):
             return f"{what}, {samples} samples missing ({words})"
+        case FileFinishing(share=share):
+            return f"{100 * share:.0f} % of the session file is written"
         case SessionEnded(interrupted=interrupted, reason=reason):
             return " ".join(("interrupted" if interrupted else "regularly", reason))
     return _view_words(event)

@@ -13,6 +13,7 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
+    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -71,6 +72,8 @@ class SessionState:
         gaps: number of gaps.
         open_loops: sensors that are disconnected, empty for none.
         ended: how the recording ended, None while it runs.
+        finishing: share of the session file that is written since then [-], None
+            before.
         first_time: of the first event, since 1970 [s]; None before.
         last_time: of the last event, since 1970 [s].
         last: number of the last event, -1 before.
@@ -101,6 +104,7 @@ class SessionState:
     gaps: int = 0
     open_loops: str = ""
     ended: SessionEnded | None = None
+    finishing: float | None = None
     first_time: float | None = None
     last_time: float = 0.0
     last: int = -1
@@ -109,6 +113,9 @@ class SessionState:
 def state_after(state: SessionState, events: Iterable[Stamped]) -> SessionState:
     """Return the state after further events, in their order."""
     for stamped in events:
+        if isinstance(stamped.event, FileFinishing):  # after the last of the log
+            state = replace(state, finishing=stamped.event.share)
+            continue
         state = replace(
             _after(state, stamped),
             first_time=stamped.time if state.first_time is None else state.first_time,

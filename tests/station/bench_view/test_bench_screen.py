@@ -37,6 +37,7 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
+    FileFinishing,
     RunBegun,
     SamplesMissing,
     SessionEnded,
@@ -137,6 +138,7 @@ STATES: dict[str, tuple[Event, ...]] = {
     "refused": (BEGUN, RUN, ASKED, REFUSED),
     "done": (BEGUN, RUN, ASKED, ConditionDone("20 Nm, point 1", True), LONG),
     "ended": (BEGUN, RUN, ASKED, hit(0), averaged(0), SessionEnded(True)),
+    "finishing": (BEGUN, RUN, SessionEnded(False), FileFinishing(0.456)),
 }
 
 
@@ -147,6 +149,11 @@ def lines(
     around = ViewContext("/long/" * 30 + "s.h5", 3_000_000_000, 1010.0, LEVELS)
     look = Look(width, height, prompt=prompt, keys=KEYS)
     return [line.plain for line in session_lines(after(*events), around, look)]
+
+
+def test_an_ended_session_says_how_far_its_file_is_written() -> None:
+    """Finishing the file of some hours takes minutes."""
+    assert any("46 % of the session file" in one for one in lines(STATES["finishing"]))
 
 
 @pytest.mark.parametrize("name", STATES)
