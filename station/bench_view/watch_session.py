@@ -162,6 +162,8 @@ def _now(state: SessionState) -> str:
     if state.ended is not None:
         how = "interrupted" if state.ended.interrupted else "ended"
         return f"{how}: {state.ended.reason}" if state.ended.reason else how
+    if state.disconnected:
+        return "the connection to the device is lost"
     if state.open_loops:
         return f"sensor loop open: {state.open_loops}"
     if state.paused:

@@ -20,8 +20,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.create_netcdf import new_file
+from jointbench.acquisition.file_access.disk_room import DiskRoom
 from jointbench.acquisition.file_access.netcdf_encodings import write_texts
 from jointbench.acquisition.file_access.netcdf_write import (
+    CHUNK_VALUES,
     Attribute,
     encode_text,
     make_variable,
@@ -64,6 +66,7 @@ def write_netcdf(
         schema=SCHEMA,
         title=f"{table.name} of {target.name}",
         overwrite=True,
+        memory=not _is_long(table),
     ) as file:
         now = datetime.now(UTC).isoformat(timespec="seconds")
         lines = [*history, f"{now} jointbench export --to netcdf"]
@@ -141,15 +144,32 @@ def _write_column(
         dataset.attrs.create("_FillValue", np.array([np.nan], dtype=values.dtype))
 
 
+def _is_long(table: ExportTable) -> bool:
+    """Return whether a table is written to the disk rather than made in memory."""
+    columns = (column.values for column in table.columns.values())
+    return any(isinstance(v, LongValues) and v.size > CHUNK_VALUES for v in columns)
+
+
 def _write_long(
     file: h5py.File, name: str, column: ExportColumn, values: LongValues, words: str
 ) -> None:
-    """Write the samples of a channel, or their times, a piece at a time."""
+    """Write the samples of a channel, or their times, a piece at a time.
+
+    Room on the disk is reserved for each, as far as the file is there.
+    """
     kind = values.shape, values.dtype
     unit = column.unit or "1"
     dataset = make_variable(file, name, kind, column.dims, units=unit, long_name=words)
-    for part in pieces(values.size):
-        dataset[part] = values[part]
+    if values.size <= CHUNK_VALUES:
+        dataset[:] = np.asarray(values)
+        return
+    with Path(file.filename).open("rb+") as handle:
+        room = DiskRoom(handle, file)
+        for part in pieces(values.size):
+            piece = values[part]
+            room.make(piece.nbytes)
+            dataset[part] = piece
+            file.flush()
 
 
 def _real(table: ExportTable) -> Iterator[tuple[str, ExportColumn]]:

@@ -70,6 +70,7 @@ class SessionState:
         paused: whether hits are ignored.
         lost: samples per channel known to be missing.
         gaps: number of gaps.
+        disconnected: whether the connection to the device is lost.
         open_loops: sensors that are disconnected, empty for none.
         ended: how the recording ended, None while it runs.
         finishing: share of the session file that is written since then [-], None
@@ -102,6 +103,7 @@ class SessionState:
     paused: bool = False
     lost: int = 0
     gaps: int = 0
+    disconnected: bool = False
     open_loops: str = ""
     ended: SessionEnded | None = None
     finishing: float | None = None
@@ -152,8 +154,13 @@ def _after(state: SessionState, stamped: Stamped) -> SessionState:
         case CableChanged(channels=channels):
             loops = "" if channels.startswith("all closed") else channels
             return replace(state, open_loops=loops)
-        case SamplesMissing(samples=samples):
-            return replace(state, lost=state.lost + samples, gaps=state.gaps + 1)
+        case SamplesMissing(what=what, samples=samples):
+            return replace(
+                state,
+                lost=state.lost + samples,
+                gaps=state.gaps + 1,
+                disconnected=what == "lost",
+            )
         case SessionEnded() as ended:
             return replace(state, ended=ended)
     return _after_command(state, stamped)

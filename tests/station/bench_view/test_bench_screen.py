@@ -156,6 +156,27 @@ def test_an_ended_session_says_how_far_its_file_is_written() -> None:
     assert any("46 % of the session file" in one for one in lines(STATES["finishing"]))
 
 
+@pytest.mark.parametrize(
+    ("events", "words"),
+    [
+        ((SamplesMissing("lost", 0, 9, 0, 0.0, "gone"),), "is lost; hits wait"),
+        (
+            (
+                SamplesMissing("lost", 0, 9, 0, 0.0, "gone"),
+                SamplesMissing("back", 0, 9, 0, 2.0, "back"),
+            ),
+            "strike point 1",
+        ),
+        ((ConditionDone("20 Nm, point 1", False),), "the next point follows"),
+    ],
+)
+def test_no_hit_is_asked_for_that_would_not_count(
+    events: tuple[Event, ...], words: str
+) -> None:
+    """While the device is away, and between a point and the next one."""
+    assert any(words in one for one in lines((BEGUN, RUN, ASKED, *events)))
+
+
 @pytest.mark.parametrize("name", STATES)
 @pytest.mark.parametrize("size", [(80, 24), (160, 50), (80, 50), (40, 12)])
 def test_no_line_is_wider_and_no_screen_higher_than_the_terminal(
