@@ -155,7 +155,8 @@ def _finished(state: SessionState) -> str:
     """Return how many conditions of a plan are over, or the names of timed runs."""
     if state.planned:
         return f"{len(state.finished)} of {state.planned} are done"
-    return ", ".join(name for name, early in state.finished.items() if not early)
+    whole = [name for name, early in state.finished.items() if not early]
+    return ", ".join(whole) or "none"
 
 
 def _now(state: SessionState) -> str:
