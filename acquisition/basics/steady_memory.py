@@ -19,7 +19,7 @@ def keep_memory_steady(large: int = _LARGE) -> bool:
 
     Args:
         large: size of a block from which it goes back at once [bytes]. Each one that
-            does costs the time to clear its pages when it is taken again.
+            does costs the time to clear it when it is taken again.
 
     Returns:
         Whether the C library took the settings; others than glibc need not be.

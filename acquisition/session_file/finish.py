@@ -156,7 +156,7 @@ def _pieces(
 ) -> Iterator[Samples]:
     """Yield the samples of a span after reserving room for them.
 
-    Progress is told how many samples of the span were taken.
+    Progress receives how many samples of the span were taken.
     """
     pieces = read_pieces(live, span.stored, span.count)
     done = 0
