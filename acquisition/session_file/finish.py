@@ -7,6 +7,7 @@ or recovered, in constant memory.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -124,7 +125,7 @@ def _copy(
                     live,
                     span,
                     room,
-                    lambda done, before=written: progress((before + done) / whole),
+                    partial(_report, progress, written, whole),
                 ),
             )
             written += span.count
@@ -132,6 +133,13 @@ def _copy(
         _write_log(live, file)
         file.flush()
     return _account(content, sum(len(r.hits) for r in session.recordings))
+
+
+def _report(
+    progress: Callable[[float], None], before: int, whole: int, done: int
+) -> None:
+    """Report the share of all samples that is written, those before a span included."""
+    progress((before + done) / whole)
 
 
 def _write_log(live: h5py.File, file: h5py.File) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from jointbench.station.bench_view.live_view import LiveView
 from jointbench.station.session_events.event_codec import Stamped
-from jointbench.station.session_events.flow_events import FileFinishing
+from jointbench.station.session_events.view_events import FileFinishing
 
 _STEP = 0.01
 """Share after which it is shown again [-]."""

@@ -14,7 +14,6 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
-    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -39,6 +38,7 @@ from jointbench.station.session_events.operator_events import (
 )
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )

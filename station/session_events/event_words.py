@@ -6,7 +6,6 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
-    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -30,6 +29,7 @@ from jointbench.station.session_events.operator_events import (
 )
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )

@@ -13,7 +13,6 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
-    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -35,6 +34,7 @@ from jointbench.station.session_events.operator_events import (
 )
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )

@@ -37,7 +37,6 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
-    FileFinishing,
     RunBegun,
     SamplesMissing,
     SessionEnded,
@@ -53,6 +52,7 @@ from jointbench.station.session_events.operator_events import (
 from jointbench.station.session_events.session_state import SessionState, state_after
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )

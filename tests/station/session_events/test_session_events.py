@@ -24,7 +24,6 @@ from jointbench.station.session_events.flow_events import (
     Asked,
     CableChanged,
     ConditionDone,
-    FileFinishing,
     RunBegun,
     Said,
     SamplesMissing,
@@ -39,6 +38,7 @@ from jointbench.station.session_events.hit_events import (
     VerdictChanged,
 )
 from jointbench.station.session_events.session_state import SessionState, state_after
+from jointbench.station.session_events.view_events import FileFinishing
 
 FIRST = HitJudged(0, 0, 10, 90, "1", 150.0, "ok", 0.0, "single clean pulse")
 OTHER = HitJudged(1, 100, 110, 190, "1", 20.0, "weak", 0.1, "below a third")
