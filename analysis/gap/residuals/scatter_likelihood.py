@@ -150,7 +150,7 @@ def _whitener(spread: FloatArray) -> FloatArray:
     one = np.broadcast_to(np.eye(spread.shape[-1]), spread.shape)
     across = np.swapaxes(spread, -1, -2)
     try:
-        return np.linalg.cholesky(one + spread @ across)
+        return np.asarray(np.linalg.cholesky(one + spread @ across), float)
     except np.linalg.LinAlgError:
         upper = np.linalg.qr(np.concatenate([across, one], axis=-2), mode="r")
     sign = np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)
