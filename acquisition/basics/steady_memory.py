@@ -10,12 +10,16 @@ _ARENAS = 2  # heaps of all threads together
 _TRIM_THRESHOLD, _MMAP_THRESHOLD, _ARENA_MAX = -1, -3, -8
 
 
-def keep_memory_steady() -> bool:
+def keep_memory_steady(large: int = _LARGE) -> bool:
     """Let large blocks of memory go back to the system as soon as they are freed.
 
     The C library of Linux keeps freed blocks of up to 32 MB for later. Reads of
     changing size then leave holes between what stays, and a recording grows by
     megabytes a minute for as long as the computer is busy.
+
+    Args:
+        large: size of a block from which it goes back at once [bytes]. Each one that
+            does costs the time to clear it when it is taken again.
 
     Returns:
         Whether the C library took the settings; others than glibc need not be.
@@ -30,8 +34,8 @@ def keep_memory_steady() -> bool:
     except (AttributeError, OSError):
         return False
     settings = (
-        (_MMAP_THRESHOLD, _LARGE),
-        (_TRIM_THRESHOLD, _LARGE),
+        (_MMAP_THRESHOLD, large),
+        (_TRIM_THRESHOLD, large),
         (_ARENA_MAX, _ARENAS),
     )
     return all(tell(name, value) == 1 for name, value in settings)

@@ -31,6 +31,9 @@ _DOUBLE, _TEXT = 8, 100  # size of a number, and overhead of a text
 _NUMBERS = {h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING}
 # Attributes that link dimension scales; they are not read here.
 _SCALE_ATTRIBUTES = {b"DIMENSION_LIST", b"REFERENCE_LIST"}
+# Size of HDF5's cache of indices and headers [bytes]. It counts them as stored, in
+# memory they take ten times as much; by default it grows to 32 MB.
+_METADATA = 2**19
 _USER_BLOCK = 512  # bytes that MATLAB writes before the signature
 _COMPLEX = ((b"real", b"imag"), (b"r", b"i"))
 _PAIR = 2
@@ -144,9 +147,14 @@ def open_guarded(
 def _open(path: Path) -> h5py.File:
     """Open a file, also one of a killed recording."""
     try:
-        return h5py.File(path, "r")
+        file = h5py.File(path, "r")
     except OSError:
-        return h5py.File(path, "r", libver="latest", swmr=True)
+        file = h5py.File(path, "r", libver="latest", swmr=True)
+    settings = file.id.get_mdc_config()
+    settings.set_initial_size = True
+    settings.initial_size = settings.min_size = settings.max_size = _METADATA
+    file.id.set_mdc_config(settings)
+    return file
 
 
 def _require_signature(path: Path, user_block: int) -> None:

@@ -5,8 +5,9 @@ Samples are copied some columns at a time, so that a session of any length is fi
 or recovered, in constant memory.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -61,7 +62,13 @@ class Finished:
     ended: bool
 
 
-def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finished:
+def finish_live(
+    source: Path,
+    target: Path,
+    *,
+    overwrite: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Finished:
     """Write the session of a recording.
 
     Args:
@@ -69,6 +76,7 @@ def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finis
         target: of the session; the source itself is replaced once the session is
             complete on the disk.
         overwrite: replace an existing file.
+        progress: called with the share of the samples that is written [-].
 
     Raises:
         UsageError: there is such a file and `overwrite` is off, or it cannot be
@@ -89,13 +97,16 @@ def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finis
     with locked(target), new as file, opened as live:
         with damage_named(source):
             require_schema(live, LIVE_SCHEMA, source)
-        return _copy(source, live, file)
+        return _copy(source, live, file, progress or (lambda share: None))
 
 
-def _copy(source: Path, live: h5py.File, file: h5py.File) -> Finished:
+def _copy(
+    source: Path, live: h5py.File, file: h5py.File, progress: Callable[[float], None]
+) -> Finished:
     with damage_named(source):
         content = read_live(live)
         session, spans = outline_live(content)
+    written, whole = 0, sum(span.count for span in spans)
     with Path(file.filename).open("rb+") as handle:
         room = DiskRoom(handle, file)
         room.make(_ENTRY_TWICE * int(live["log"].shape[0]))
@@ -109,12 +120,26 @@ def _copy(source: Path, live: h5py.File, file: h5py.File) -> Finished:
                 recording,
                 position,
                 count=span.count,
-                pieces=_pieces(source, live, span, room),
+                pieces=_pieces(
+                    source,
+                    live,
+                    span,
+                    room,
+                    partial(_report, progress, written, whole),
+                ),
             )
+            written += span.count
         write_provenance(file, session)
         _write_log(live, file)
         file.flush()
     return _account(content, sum(len(r.hits) for r in session.recordings))
+
+
+def _report(
+    progress: Callable[[float], None], before: int, whole: int, done: int
+) -> None:
+    """Report the share of all samples that is written, those before a span included."""
+    progress((before + done) / whole)
 
 
 def _write_log(live: h5py.File, file: h5py.File) -> None:
@@ -131,10 +156,18 @@ def _write_log(live: h5py.File, file: h5py.File) -> None:
 
 
 def _pieces(
-    source: Path, live: h5py.File, span: LiveSpan, room: DiskRoom
+    source: Path,
+    live: h5py.File,
+    span: LiveSpan,
+    room: DiskRoom,
+    progress: Callable[[int], None],
 ) -> Iterator[Samples]:
-    """Yield the samples of a span after reserving room for them."""
+    """Yield the samples of a span after reserving room for them.
+
+    Progress receives how many samples of the span were taken.
+    """
     pieces = read_pieces(live, span.stored, span.count)
+    done = 0
     while True:
         with damage_named(source):
             piece = next(pieces, None)
@@ -144,6 +177,8 @@ def _pieces(
             return
         room.make(piece.nbytes)
         yield piece
+        done += piece.shape[1]
+        progress(done)
 
 
 def _account(content: LiveContent, hits: int) -> Finished:

@@ -2,13 +2,13 @@
 
     python benchmarks/acquisition/memory.py --hours 4
 
-Recording is measured as it is: the recording process and the program that follows it,
-on a simulated chassis that runs faster than real time, for `--minutes` of signal. A
-session of `--hours` of 4 x 51.2 kS/s is not waited for: its file is written at the
-speed of the disk, in the layout that a recording has when it is killed, with hits of a
-two-mode structure. `recover`, `verify`, `modal`, `process` and `export` run on it, each
-in a process of its own whose memory is looked at twice a second. Every step is added to
-`memory.json` beside this script; `docs/bench-memory.md` is written from that file.
+Recording itself is measured by `load.py`. A session of `--hours` of 4 x 51.2 kS/s is
+not waited for: its file is written at the speed of the disk, in the layout that a
+recording has when it is killed, with hits of a two-mode structure. `recover`, `verify`,
+`modal`, `process` and `export` run on it, each in a process of its own whose memory is
+looked at twice a second. Universal files are text, 59 GB for 4 h, so that `export-uff`
+is for shorter ones. Every step is added to `memory.json` beside this script;
+`docs/bench-memory.md` is written from that file.
 """
 
 import argparse
@@ -243,7 +243,8 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--hours", type=float, default=4.0)
     parser.add_argument("--folder", type=Path, default=Path("/tmp/jointbench-memory"))
-    parser.add_argument("--steps", default="recover,verify,modal,process,export")
+    parser.add_argument("--steps", default="recover,verify,modal,process,export-netcdf")
+    parser.add_argument("--keep", action="store_true", help="keep the folder")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     live = options.folder / "live.h5"
@@ -256,7 +257,8 @@ def main() -> None:
         "verify": ["verify", str(done)],
         "modal": ["modal", str(done), "--json", str(options.folder / "modal.json")],
         "process": ["process", str(done)],
-        "export": ["export", str(done), "--to", "uff"],
+        "export-netcdf": ["export", str(done), "--to", "netcdf"],
+        "export-uff": ["export", str(done), "--to", "uff"],
     }
     try:
         if not done.exists():
@@ -269,7 +271,7 @@ def main() -> None:
             RUNS.write_text(json.dumps([asdict(s) for s in steps], indent=1) + "\n")
             PAGE.write_text(page(steps), encoding="utf-8")
     finally:
-        if "export" in wanted:
+        if not options.keep:
             shutil.rmtree(options.folder)
 
 

@@ -282,7 +282,8 @@ def printed() -> str:
                 PRINTED_DAMPING, None, None
             )
         frequency = float(np.sqrt(PRINTED_STIFFNESS / mass) / (2 * np.pi))
-        states.append(IdentifiedState("printed", preload, frequency, values))
+        clamped = table.spread_preload(preload)
+        states.append(IdentifiedState("printed", clamped, frequency, values))
     text = """
 ## The published numbers of 2025
 

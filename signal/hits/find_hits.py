@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import NoHitFound
 from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import Hit, Quantity, Recording, Verdict
@@ -120,15 +120,15 @@ def trigger_indices(
         Indices of the firing samples, ascending.
     """
     crossings = np.flatnonzero((force[:-1] < level) & (force[1:] >= level)) + 1
-    low: IntArray = np.flatnonzero(force < rearm)
     fired: list[int] = []
-    for crossing in crossings:
-        if fired:
-            next_low = np.searchsorted(low, fired[-1])
-            armed = next_low < low.size and low[next_low] < crossing
-            if not armed or crossing - fired[-1] <= dead:
-                continue
-        fired.append(int(crossing))
+    armed, looked = True, 0
+    for crossing in crossings.tolist():
+        armed = armed or bool((force[looked:crossing] < rearm).any())
+        looked = crossing
+        if fired and (not armed or crossing - fired[-1] <= dead):
+            continue
+        fired.append(crossing)
+        armed = False
     return tuple(fired)
 
 

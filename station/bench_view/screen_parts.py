@@ -17,6 +17,7 @@ from jointbench.station.session_events.condition_states import (
 from jointbench.station.session_events.session_state import SessionState
 
 _CELL = 40  # columns that a level takes
+_NAME, _NAME_SHARE = 8, 4  # columns of a name at least; its share of a level at most
 _MARKS = {
     ConditionMark.DONE: ("✓", "green"),
     ConditionMark.OPEN: ("·", "default"),
@@ -102,10 +103,12 @@ def level_lines(
     while -(-len(levels) // columns) > rows:
         columns += 1
     cell = width // columns
+    longest = max((len(visible(level.name)) for level in levels), default=0)
+    name = min(max(longest, _NAME), cell // _NAME_SHARE)
     for first in range(0, len(levels), columns):
         line = Text()
         for level in levels[first : first + columns]:
-            line.append_text(_level(level, state.open_loops, cell))
+            line.append_text(_level(level, state.open_loops, cell, name))
         yield line
 
 
@@ -151,12 +154,13 @@ def _point(condition: ConditionState) -> Text:
     return Text(f" {visible(condition.point)}{sign}{now}", style=style).append(" ")
 
 
-def _level(level: Level, open_loops: str, cell: int) -> Text:
+def _level(level: Level, open_loops: str, cell: int, room: int) -> Text:
+    """Return name, bar and number of a channel; the name has so many columns."""
     style = ALERT if level.full else "green"
     lamp = " OVERLOAD" if level.full else ""
     if level.name in open_loops.split(", "):
         style, lamp = ALERT, " OPEN"
-    name = fitted(Text(f"{visible(level.name):8}"), min(8, cell // 4))
+    name = fitted(Text(f"{visible(level.name):{room}}"), room)
     number = f"{100 * level.share:5.1f} %{lamp}"
     bar = max(0, cell - name.cell_len - 20)
     filled = min(bar, round(bar * level.share))

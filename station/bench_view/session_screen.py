@@ -27,7 +27,7 @@ from jointbench.station.bench_view.task_lines import (
 from jointbench.station.session_events.session_state import SessionState
 
 _LEAST_PLOT = 3  # rows of an FRF below which it is left out
-_MOST_PLOT = 12
+_MOST_PLOT = 24
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,9 +85,15 @@ def _task(state: SessionState) -> tuple[str, str, str]:
     """Return the task in block letters and in words, and its style."""
     if state.ended is not None:
         how = "interrupted" if state.ended.interrupted else "all is recorded"
-        return "END", f"the recording has ended: {how}", "bold"
+        words = f"the recording has ended: {how}"
+        if state.finishing is not None:
+            words += f"; {100 * state.finishing:.0f} % of the session file is written"
+        return "END", words, "bold"
     if state.begun is None and state.last < 0:
         return "WAIT", "the device and the session file are opened", "bold"
+    if state.disconnected:
+        words = "the connection to the device is lost; hits wait until it is back"
+        return "LOST", words, "bold red"
     if state.open_loops:
         words = f"sensor loop open: {state.open_loops}; hits wait for the cable"
         return "CABLE", words, "bold red"
@@ -110,6 +116,8 @@ def _strike(state: SessionState) -> tuple[str, str, str]:
         (c for c in condition_states(state) if c.mark is ConditionMark.NOW), None
     )
     if now is None:
+        if state.asked in state.finished:
+            return "WAIT", f"{state.asked} is done; the next point follows", "bold"
         return "HIT", f"hit {state.asked}", "bold"
     direction = state.begun.direction if state.begun is not None else ""
     torque = "" if now.torque is None else f" {now.torque:g} Nm"

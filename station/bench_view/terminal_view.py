@@ -115,7 +115,7 @@ class TerminalView:
         """Return the lines about the keys that do something now."""
         if self._key_lines is not KEYS:
             return self._key_lines
-        if self.state.begun is None:
+        if self.state.begun is None or self.state.ended is not None:
             return ()
         return KEYS if self.state.begun.conditions else RUN_KEYS
 

@@ -140,7 +140,7 @@ def _line(stamped: Stamped) -> str:
 def _show(session: Path, state: SessionState, screen: Console) -> None:
     rows = [
         ("now", _now(state)),
-        ("conditions", f"{state.done} of {state.planned} are done"),
+        ("conditions" if state.planned else "runs", _finished(state)),
         ("given up", ", ".join(n for n, g in state.finished.items() if g) or "none"),
         ("hits", _counted(state)),
         ("missing samples", f"{state.lost} in {state.gaps} gaps"),
@@ -151,14 +151,26 @@ def _show(session: Path, state: SessionState, screen: Console) -> None:
     screen.print(table(f"{session}", ("session", "state"), rows))
 
 
+def _finished(state: SessionState) -> str:
+    """Return how many conditions of a plan are over, or the names of timed runs."""
+    if state.planned:
+        return f"{len(state.finished)} of {state.planned} are done"
+    whole = [name for name, early in state.finished.items() if not early]
+    return ", ".join(whole) or "none"
+
+
 def _now(state: SessionState) -> str:
     if state.ended is not None:
         how = "interrupted" if state.ended.interrupted else "ended"
         return f"{how}: {state.ended.reason}" if state.ended.reason else how
+    if state.disconnected:
+        return "the connection to the device is lost"
     if state.open_loops:
         return f"sensor loop open: {state.open_loops}"
     if state.paused:
         return "pause"
+    if state.run is not None and state.run.duration is not None:
+        return f"{state.run.purpose} run {state.run.name!r} is recorded"
     return f"hit {state.asked}" if state.asked else "begins"
 
 

@@ -20,7 +20,7 @@ from jointbench.station.archive.session_problems import (
     problems_of,
 )
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.screen.terminal import console, table, write_json
+from jointbench.station.screen.terminal import console, progress_bar, table, write_json
 from jointbench.station.sources.record_live import HITS_LATER, with_hits
 
 
@@ -109,7 +109,13 @@ def run_recover(
 
 def _recover(file: Path, target: Path, *, overwrite: bool) -> Finished:
     """Write the recovered session; judge hits that the recording left unjudged."""
-    done = finish_live(file, target, overwrite=overwrite)
+    with progress_bar("recovering") as bar:
+        done = finish_live(
+            file,
+            target,
+            overwrite=overwrite,
+            progress=lambda share: bar("recovering", share),
+        )
     content = live_content(file)
     if content is None or not content.meta.items() >= HITS_LATER.items():
         return done

@@ -23,6 +23,7 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live
 from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.live_write import channel_rows
+from jointbench.station.bench_view.finishing_shown import FinishingShown
 from jointbench.station.bench_view.live_view import LiveView
 from jointbench.station.bench_view.terminal_view import viewing
 from jointbench.station.continuous.channel_checks import ChannelChecks
@@ -155,7 +156,7 @@ def record_plan(
                 if out.exists() and not is_held(out):
                     finish_live(out, out, overwrite=True)
             raise
-        finish_live(out, out, overwrite=True)
+        finish_live(out, out, overwrite=True, progress=FinishingShown(view))
 
 
 def _record(

@@ -67,7 +67,10 @@ def sensor_findings(
         if due is not None:
             seen, _, remedy = due.partition("; ")
             yield look(
-                "sensors", sensor.name, seen, remedy or "state it with calibrated = ..."
+                "sensors",
+                sensor.name,
+                seen,
+                remedy or "write its date, for example calibrated = 2026-03-02",
             )
 
 

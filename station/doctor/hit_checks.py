@@ -5,7 +5,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from jointbench.acquisition.records.recordings import Channel, Hit, Verdict
+from jointbench.acquisition.records.recordings import (
+    Channel,
+    Hit,
+    Quantity,
+    Verdict,
+)
 from jointbench.signal.hits.live_hits import CutHit
 from jointbench.station.doctor.bench_finding import BenchFinding, bad, good, look
 
@@ -13,6 +18,9 @@ SEEN = 10.0
 """Peak of a response over its noise from which it saw a hit [-]."""
 LEAST_SHARE = 0.02
 """Peak over the range below which a range is too large [-]."""
+
+_UNMOVED = (Quantity.VOLTAGE, Quantity.TEMPERATURE, Quantity.TACHO)
+"""What a hit does not change: load washers, thermometers, the pulses of a tacho."""
 
 
 def hit_findings(
@@ -35,7 +43,8 @@ def hit_findings(
             "strike again, once and squarely; a tip that is too soft strikes twice",
         )
     for channel, row in zip(channels, cut.samples, strict=True):
-        yield from _channel(channel, row, cut.trigger)
+        if channel.quantity not in _UNMOVED:
+            yield from _channel(channel, row, cut.trigger)
 
 
 def no_hit(seconds: float) -> BenchFinding:
@@ -65,15 +74,15 @@ def _channel(channel: Channel, row: np.ndarray, trigger: int) -> Iterator[BenchF
         yield bad(
             "hit",
             channel.name,
-            f"{share:.0%} of its range",
+            f"{100 * share:.0f} % of its range",
             "strike more softly, take a larger range or a less sensitive sensor",
         )
     elif channel.range and share < LEAST_SHARE:
         yield look(
             "hit",
             channel.name,
-            f"{share:.2%} of its range",
+            f"{100 * share:.2f} % of its range",
             "write a smaller range, or take a more sensitive sensor",
         )
     else:
-        yield good("hit", channel.name, f"{share:.1%} of its range")
+        yield good("hit", channel.name, f"{100 * share:.1f} % of its range")

@@ -3,7 +3,7 @@
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -90,14 +90,22 @@ def run_doctor(
             screen.print(f"{finding.step}: {_of(finding)} {finding.health.value}")
     rows = [(f.step, f.what, f.health.value, f.seen) for f in found]
     screen.print(table(url, ("step", "of", "", "seen"), rows, words={0, 1, 2, 3}))
-    for finding in found:
-        if finding.remedy:
-            screen.print(f"{_of(finding)} {finding.remedy}", soft_wrap=True)
+    for line in remedy_lines(found):
+        screen.print(line, soft_wrap=True)
     open_ = [f for f in found if f.health is not Health.GOOD]
     words = f"{len(open_)} of {len(found)} findings need a look"
     screen.print(f"\n{words if open_ else 'all is good'}")
     write_json(json_target, {"source": url, "findings": [f.to_json() for f in found]})
     return tuple(found)
+
+
+def remedy_lines(findings: Sequence[BenchFinding]) -> list[str]:
+    """Return what to do, a line each; findings with one remedy share it."""
+    names: dict[str, list[str]] = {}
+    for finding in findings:
+        if finding.remedy:
+            names.setdefault(finding.remedy, []).append(finding.what.removesuffix(":"))
+    return [f"{', '.join(dict.fromkeys(of))}: {remedy}" for remedy, of in names.items()]
 
 
 def _of(finding: BenchFinding) -> str:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Traces of a panel as SVG, and the marks and numbers that lie over it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -21,6 +21,7 @@ from jointbench.station.drawing.svg_paths import (
     area_path,
     bars_path,
     dots_path,
+    level_spans_path,
     line_path,
     on_grid,
     spans_path,
@@ -127,12 +128,11 @@ def _scatter(
         style = f"stroke-width:{thick:g}" + (f";stroke-dasharray:{dash}" * bool(dash))
         said = attributes(own.get("color"), "ln", style=style)
         svg.append(f'<path {said} d="{line_path(across, up)}"/>')
-    ends = interval_ends(trace)
     color = mark.get("color", own.get("color"))
-    if ends is not None:
-        low, high = (y.places(end.tolist()) for end in ends)
-        path = spans_path(across, np.nan_to_num(low, nan=-1.0), high)
-        svg.append(f'<path {attributes(color, "ln span")} d="{path}"/>')
+    svg += [
+        f'<path {attributes(color, "ln span")} d="{path}"/>'
+        for path in _spans(trace, across, up, x, y)
+    ]
     if "markers" in mode:
         made = _marks(mark, color, across, up)
         svg.append(made.svg)
@@ -140,6 +140,23 @@ def _scatter(
     if "text" in mode:
         over.append(_texts(trace, across, up))
     return Drawn("".join(svg), "".join(over))
+
+
+def _spans(
+    trace: Mapping[str, object],
+    across: FloatArray,
+    up: FloatArray,
+    x: AxisScale,
+    y: AxisScale,
+) -> Iterator[str]:
+    """Yield the paths of the intervals of points, upright and level."""
+    upright, level = interval_ends(trace), interval_ends(trace, "x")
+    if upright is not None:
+        low, high = (y.places(end.tolist()) for end in upright)
+        yield spans_path(across, np.nan_to_num(low, nan=-1.0), high)
+    if level is not None:
+        left, right = (x.places(end.tolist()) for end in level)
+        yield level_spans_path(np.nan_to_num(left, nan=-1.0), right, up)
 
 
 def _same_length(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:

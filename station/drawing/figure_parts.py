@@ -186,7 +186,7 @@ def _extent(trace: Part, side: str) -> list[object]:
     if trace.get("type") == "heatmap":
         return [_edges(trace.get(side))]
     found: list[object] = [trace.get(side)]
-    ends = interval_ends(trace) if side == "y" else None
+    ends = interval_ends(trace, side)
     if ends is not None:
         found += [end.tolist() for end in ends]
     return found

@@ -114,3 +114,18 @@ def spans_path(x: FloatArray, low: FloatArray, high: FloatArray) -> str:
             strict=True,
         )
     )
+
+
+def level_spans_path(left: FloatArray, right: FloatArray, y: FloatArray) -> str:
+    """Return level lines from left to right at each place."""
+    begin, down, known = on_grid(left, y)
+    end, _, also = on_grid(right, y)
+    return "".join(
+        f"M{a} {b}H{c}"
+        for a, b, c in zip(
+            begin[known & also].tolist(),
+            down[known & also].tolist(),
+            end[known & also].tolist(),
+            strict=True,
+        )
+    )

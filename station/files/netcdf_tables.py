@@ -20,15 +20,19 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.create_netcdf import new_file
+from jointbench.acquisition.file_access.disk_room import DiskRoom
 from jointbench.acquisition.file_access.netcdf_encodings import write_texts
 from jointbench.acquisition.file_access.netcdf_write import (
+    CHUNK_VALUES,
     Attribute,
     encode_text,
+    make_variable,
     write_attributes,
     write_variable,
 )
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.records.session import software_version
+from jointbench.station.files.long_values import LongValues, pieces
 from jointbench.station.files.table_files import ExportColumn, ExportTable, plain_name
 
 SCHEMA = "jointbench-export/1"
@@ -62,6 +66,7 @@ def write_netcdf(
         schema=SCHEMA,
         title=f"{table.name} of {target.name}",
         overwrite=True,
+        memory=not _is_long(table),
     ) as file:
         now = datetime.now(UTC).isoformat(timespec="seconds")
         lines = [*history, f"{now} jointbench export --to netcdf"]
@@ -84,7 +89,10 @@ def one_unit_each(table: ExportTable) -> ExportTable:
     Args:
         table: columns part, item, name, unit, word, value, sd, preload.
     """
-    cells = {name: column.values.tolist() for name, column in table.columns.items()}
+    cells = {
+        name: np.asarray(column.values).tolist()
+        for name, column in table.columns.items()
+    }
     columns: dict[str, ExportColumn] = {}
     for number, what in enumerate(cells["name"]):
         of = " ".join(filter(None, (cells["part"][number], cells["item"][number])))
@@ -104,6 +112,9 @@ def _write_column(
 ) -> None:
     own, column = columns[name]
     words = column.words or own
+    if isinstance(column.values, LongValues):
+        _write_long(file, name, column, column.values, words)
+        return
     if column.values.dtype.kind == "U":
         if not column.dims:
             write_attributes(file, {name: str(column.values)})
@@ -133,10 +144,38 @@ def _write_column(
         dataset.attrs.create("_FillValue", np.array([np.nan], dtype=values.dtype))
 
 
+def _is_long(table: ExportTable) -> bool:
+    """Return whether a table is written to the disk rather than made in memory."""
+    columns = (column.values for column in table.columns.values())
+    return any(isinstance(v, LongValues) and v.size > CHUNK_VALUES for v in columns)
+
+
+def _write_long(
+    file: h5py.File, name: str, column: ExportColumn, values: LongValues, words: str
+) -> None:
+    """Write the samples of a channel, or their times, a piece at a time.
+
+    Room on the disk is reserved for each, as far as the file is there.
+    """
+    kind = values.shape, values.dtype
+    unit = column.unit or "1"
+    dataset = make_variable(file, name, kind, column.dims, units=unit, long_name=words)
+    if values.size <= CHUNK_VALUES:
+        dataset[:] = np.asarray(values)
+        return
+    with Path(file.filename).open("rb+") as handle:
+        room = DiskRoom(handle, file)
+        for part in pieces(values.size):
+            piece = values[part]
+            room.make(piece.nbytes)
+            dataset[part] = piece
+            file.flush()
+
+
 def _real(table: ExportTable) -> Iterator[tuple[str, ExportColumn]]:
     """Yield the columns, complex ones as real and imaginary parts."""
     for name, column in table.columns.items():
-        if not np.iscomplexobj(column.values):
+        if isinstance(column.values, LongValues) or not np.iscomplexobj(column.values):
             yield name, column
             continue
         for ending, part, values in (

@@ -2,15 +2,18 @@
 """What a session holds, as tables for other programs: see `export_command`."""
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.units import example_unit
 from jointbench.acquisition.file_access.netcdf_write import Attribute
 from jointbench.acquisition.records.provenance import Provenance
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.station.files.long_values import LongValues
 from jointbench.station.files.table_files import ExportColumn, ExportTable
 
 ELAPSED = "elapsed_time"
@@ -52,21 +55,29 @@ def session_attributes(session: Session) -> dict[str, Attribute]:
 
 
 def _samples(recording: Recording, axis: str = "time") -> dict[str, ExportColumn]:
+    """Return time and channels; samples are read as they are written."""
     count, along = recording.samples.shape[1], (axis,)
-    time = recording.start_time + np.arange(count) / recording.sample_rate
+
+    def times(first: int, past: int) -> FloatArray:
+        since = np.arange(first, past) / recording.sample_rate
+        return np.asarray(recording.start_time + since)
+
+    def samples(row: int, first: int, past: int) -> FloatArray:
+        return recording.samples[row, first:past]
+
     rows = {
         channel.name: ExportColumn(
             example_unit(channel.quantity.value),
-            row,
+            LongValues(count, partial(samples, row)),
             along,
             " ".join(
                 filter(None, (channel.quantity.value, channel.point, channel.direction))
             ),
         )
-        for channel, row in zip(recording.channels, recording.samples, strict=True)
+        for row, channel in enumerate(recording.channels)
     }
     words = "time since the session began"
-    return {axis: ExportColumn("s", time, along, words)} | rows
+    return {axis: ExportColumn("s", LongValues(count, times), along, words)} | rows
 
 
 def _hits(recording: Recording) -> dict[str, ExportColumn]:

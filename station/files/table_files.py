@@ -10,17 +10,20 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import isnan
+from math import isnan, prod
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.station.files.long_values import LongValues, pieces
 from jointbench.station.files.output_paths import require_mark, whole_file
 from jointbench.station.files.spreadsheet_text import escaped
 
 _LONGEST_NAME = 63  # of a variable in MATLAB
 _MAT_WORDS = b"MATLAB 5.0 MAT-file, written by jointbench"
+_MAT_BYTES = 2**31  # that such a file can hold
 _MAT_TEXT = 116  # bytes of words in front of a MAT file
 _ALONG = ("frequency", "mode")
 Array = np.ndarray[Any, Any]
@@ -32,13 +35,13 @@ class ExportColumn:
 
     Attributes:
         unit: of the numbers; empty for texts.
-        values: of any shape.
+        values: of any shape; those of a recording are read as they are written.
         dims: name of each axis.
         words: what it is; empty where its name is enough.
     """
 
     unit: str
-    values: Array
+    values: Array | LongValues
     dims: tuple[str, ...]
     words: str = ""
 
@@ -74,7 +77,7 @@ def write_csv(target: Path, tables: Iterable[ExportTable]) -> Iterator[Path]:
         The files, as they are written.
     """
     for table in tables:
-        heads: dict[str, dict[str, Array]] = {}
+        heads: dict[str, dict[str, Array | LongValues]] = {}
         in_heads = {d for c in table.columns.values() for d in c.dims if d != c.along}
         for name, column in table.columns.items():
             if name.removesuffix("_label") not in in_heads:
@@ -92,15 +95,18 @@ def write_csv(target: Path, tables: Iterable[ExportTable]) -> Iterator[Path]:
 
 def _flat(
     name: str, column: ExportColumn, labels: Mapping[str, Sequence[str]]
-) -> Iterator[tuple[str, Array]]:
+) -> Iterator[tuple[str, Array | LongValues]]:
     """Yield a column of one dimension for each place along the others."""
+    unit = f" [{column.unit}]" if column.unit else ""
+    if isinstance(column.values, LongValues):
+        yield f"{name}{unit}", column.values
+        return
     along = column.dims.index(column.along)
     others = [dim for dim in column.dims if dim != column.along]
     values = np.moveaxis(column.values, along, -1)
     parts = [("", values)]
     if np.iscomplexobj(values):
         parts = [(" re", values.real), (" im", values.imag)]
-    unit = f" [{column.unit}]" if column.unit else ""
     for place in np.ndindex(values.shape[:-1]):
         words = [
             labels[dim][index] if dim in labels else str(index + 1)
@@ -111,15 +117,18 @@ def _flat(
             yield f"{name}{where}{part}{unit}", numbers[place]
 
 
-def _write_rows(path: Path, columns: Mapping[str, Array]) -> None:
+def _write_rows(path: Path, columns: Mapping[str, Array | LongValues]) -> None:
+    """Write columns of equal length side by side, a piece at a time."""
+    (count,) = {values.shape[0] for values in columns.values()}
     heads = io.StringIO()
     csv.writer(heads).writerow([escaped(head) for head in columns])
     require_mark(path, heads.getvalue().encode(), "export of the same columns")
     with whole_file(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         file.write(heads.getvalue())
         writer = csv.writer(file)
-        for row in zip(*(v.tolist() for v in columns.values()), strict=True):
-            writer.writerow([_cell(value) for value in row])
+        for span in pieces(count):
+            rows = zip(*(v[span].tolist() for v in columns.values()), strict=True)
+            writer.writerows([_cell(value) for value in row] for row in rows)
 
 
 def _cell(value: object) -> str:
@@ -137,18 +146,20 @@ def write_mat(path: Path, tables: Sequence[ExportTable]) -> None:
         tables: their columns become variables, units others called ``*_unit``.
 
     Raises:
-        UsageError: there is a file that this function did not write.
+        UsageError: there is a file that this function did not write, or the values
+            exceed what such a file holds.
     """
     import scipy.io
 
     require_mark(path, _MAT_WORDS, "export")
+    _require_mat_size(tables)
 
     content: dict[str, Array] = {}
     for table in tables:
         for name, column in table.columns.items():
             whole = f"{table.name}_{name}" if len(tables) > 1 else name
             variable = _variable(whole, content)
-            content[variable] = _rows_of_text(column.values)
+            content[variable] = _rows_of_text(np.asarray(column.values))
             if column.unit:
                 own = _variable(f"{variable[: _LONGEST_NAME - 5]}_unit", content)
                 content[own] = np.array([column.unit])
@@ -158,6 +169,17 @@ def write_mat(path: Path, tables: Sequence[ExportTable]) -> None:
         )
         with part.open("r+b") as file:  # by this one is known from a file of others
             file.write(_MAT_WORDS.ljust(_MAT_TEXT))
+
+
+def _require_mat_size(tables: Sequence[ExportTable]) -> None:
+    """Raise `UsageError` where values exceed a MAT file, which is made in memory."""
+    columns = [column for table in tables for column in table.columns.values()]
+    needed = sum(c.values.dtype.itemsize * prod(c.values.shape) for c in columns)
+    if needed > _MAT_BYTES:
+        raise UsageError(
+            f"{needed / 1e9:.1f} GB of values exceed a MAT file of version 5 (2 GB); "
+            "use --to netcdf, which MATLAB reads with ncread"
+        )
 
 
 def _rows_of_text(values: Array) -> Array:

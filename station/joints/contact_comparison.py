@@ -13,6 +13,7 @@ from jointbench.analysis.contact.contact_case import ContactCase, ContactConditi
 from jointbench.analysis.contact.damping import DampingChoice
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.analysis.contact.uncertainty import Uncertainty
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
@@ -28,29 +29,35 @@ from jointbench.station.pipeline.contact_prediction import ContactPoint, predict
 
 
 def known_preloads(
-    table: TheoryTable, preloads: Mapping[str, float | None]
-) -> dict[str, float]:
-    """Return the preload of every state [N]; what the table says comes first.
+    table: TheoryTable, preloads: Mapping[str, tuple[float | None, float | None]]
+) -> dict[str, Preload]:
+    """Return the preload of every state; what the table says comes first.
+
+    Args:
+        table: of the model.
+        preloads: of each state, and its standard uncertainty where it was measured [N].
 
     Raises:
         BadData: it is not known of a state.
     """
     found = {}
-    for label, own in preloads.items():
-        value = table.preloads.get(label, own)
+    for label, (own, measured_sd) in preloads.items():
+        stated = table.preloads.get(label)
+        value = own if stated is None else stated
         if value is None:
             raise BadData(
                 f"state {label!r} has no preload; say it in [contact], "
                 f'preloads = {{ "{label}" = "25 kN" }}'
             )
-        found[label] = value
+        sd = measured_sd if stated is None else None
+        found[label] = table.spread_preload(value, sd)
     return found
 
 
 def identified_states(
     result: StructureIdentification,
     joint: str,
-    preloads: Mapping[str, float],
+    preloads: Mapping[str, Preload],
     joints: Sequence[str],
 ) -> tuple[IdentifiedState, ...]:
     """Take what was identified of the joint that has a contact law, state by state.
@@ -58,7 +65,7 @@ def identified_states(
     Args:
         result: of the whole structure.
         joint: that has the law.
-        preloads: on it, by state [N].
+        preloads: on it, by state.
         joints: names of all joints that have parameters.
     """
     column = 3 * list(joints).index(joint)
@@ -118,8 +125,9 @@ def against_theory(
             rows.append(
                 TheoryRow(
                     state.label,
-                    state.preload,
-                    table.torque(state.preload),
+                    state.preload.value,
+                    state.preload.sd,
+                    table.torque(state.preload.value),
                     quantity,
                     value,
                     quantity not in state.doubtful,
@@ -141,10 +149,8 @@ def _predict_state(
         hardness_sd=table.hardness_sd * table.hardness,
         damping=damping,
     )
-    preload = table.spread_preload(state.preload)
-    return predict_point(
-        ContactCase(contact_model(model, table.mode), surface, preload, conditions)
-    )
+    law = contact_model(model, table.mode)
+    return predict_point(ContactCase(law, surface, state.preload, conditions))
 
 
 def _predicted(point: ContactPoint, quantity: JointQuantity) -> StateEstimate | None:
@@ -174,6 +180,7 @@ def theory_json(rows: Sequence[TheoryRow]) -> list[dict[str, object]]:
         {
             "state": row.state,
             "preload_n": row.preload,
+            "preload_sd_n": row.preload_sd,
             "torque_n_m": row.torque,
             "quantity": row.quantity.value,
             "unit": unit_of(row.quantity),

@@ -8,6 +8,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.analysis.structures.identification.identify_structure import (
     StructureSearch,
     identify_structure,
@@ -187,20 +188,22 @@ def _surface(
 
 def _preloads(
     settings: StructureModel, measured: dict[str, MeasuredState]
-) -> dict[str, float]:
-    """Return the preload of each state [N] where the model has a table [contact]."""
+) -> dict[str, Preload]:
+    """Return the preload of each state where the model has a table [contact]."""
     if settings.contact is None:
         return {}
-    found = {label: state.preload for label, state in measured.items()}
+    found: dict[str, tuple[float | None, float | None]] = {}
     if settings.measured is not None:
-        found = {MEASURED_LABEL: None, **found}
+        found[MEASURED_LABEL] = None, None
+    for label, state in measured.items():
+        found[label] = state.preload, state.preload_sd
     return known_preloads(settings.contact, found)
 
 
 def _theory(
     settings: StructureModel,
     surface: ContactSurface | None,
-    preloads: dict[str, float],
+    preloads: dict[str, Preload],
     result: StructureIdentification,
 ) -> tuple[TheoryRow, ...]:
     table, joints = settings.contact, settings.parametric_joints

@@ -92,8 +92,16 @@ class TheoryTable(BaseModel):
             poisson=self.poisson,
         )
 
-    def spread_preload(self, value: float) -> Preload:
-        """Return a preload [N] with what the nut factor leaves open."""
+    def spread_preload(self, value: float, measured_sd: float | None = None) -> Preload:
+        """Return a preload with its uncertainty.
+
+        Args:
+            value: [N].
+            measured_sd: by load washers or bolt elongation [N]; None where a torque
+                gave the preload, which leaves open what the nut factor does.
+        """
+        if measured_sd is not None:
+            return Preload(value, measured_sd)
         return Preload(value, value * self.nut_factor_sd / self.nut_factor)
 
     def torque(self, preload: float) -> float | None:

@@ -36,7 +36,7 @@ from jointbench.station.pipeline.chain import (
     judged_modes,
 )
 from jointbench.station.pipeline.modal_options import parse_band
-from jointbench.station.pipeline.recordings_by_preload import by_preload
+from jointbench.station.pipeline.recordings_by_preload import by_preload, preload_sd
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.screen.terminal import working
 
@@ -53,10 +53,12 @@ class MeasuredState:
     Attributes:
         preload: on the joint [N], None where the session does not say.
         chain: from its hits to modes.
+        preload_sd: its standard uncertainty where it was measured [N], else None.
     """
 
     preload: float | None
     chain: ModalChain
+    preload_sd: float | None = None
 
 
 def measured_states(
@@ -87,9 +89,8 @@ def measured_states(
             if len(groups) > 1:
                 label += "@" + ("none" if preload is None else f"{preload:g}N")
             with working(f"fitting modes of {label}"):
-                found[label] = MeasuredState(
-                    preload, judged_modes(recordings, settings, preload=preload)
-                )
+                chain = judged_modes(recordings, settings, preload=preload)
+            found[label] = MeasuredState(preload, chain, preload_sd(recordings))
     return found
 
 

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from jointbench.analysis.contact.torque_to_preload import Preload
+
 
 class JointQuantity(StrEnum):
     """What is compared, as a joint's parameters end."""
@@ -45,14 +47,14 @@ class IdentifiedState:
 
     Attributes:
         label: of the state.
-        preload: on the joint [N].
+        preload: on the joint, with what is uncertain of it.
         frequency: at which the law's loss becomes a damping coefficient [Hz], or None.
         values: identified, with their intervals.
         doubtful: those of them that the measurement does not determine.
     """
 
     label: str
-    preload: float
+    preload: Preload
     frequency: float | None
     values: Mapping[JointQuantity, StateEstimate]
     doubtful: frozenset[JointQuantity] = frozenset()
@@ -65,6 +67,7 @@ class TheoryRow:
     Attributes:
         state: its label.
         preload: on the joint [N].
+        preload_sd: its standard uncertainty, part of the predictions' intervals [N].
         torque: on each bolt [N m], or None.
         quantity: what is compared.
         identified: from the measurement.
@@ -74,6 +77,7 @@ class TheoryRow:
 
     state: str
     preload: float
+    preload_sd: float
     torque: float | None
     quantity: JointQuantity
     identified: StateEstimate

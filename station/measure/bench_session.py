@@ -3,7 +3,7 @@
 
 import uuid
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -34,6 +34,7 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.finish import finish_live
 from jointbench.acquisition.session_file.follow_log import read_log
 from jointbench.acquisition.session_file.live_write import channel_rows
+from jointbench.station.bench_view.finishing_shown import FinishingShown
 from jointbench.station.bench_view.live_view import LiveView, Viewing
 from jointbench.station.bench_view.terminal_view import viewing as viewing_terminal
 from jointbench.station.files.output_paths import check_outputs
@@ -192,7 +193,7 @@ def measure(
                 if out.exists() and not is_held(out):
                     finish_session(out)
             raise
-        finish_session(out)
+        finish_session(out, FinishingShown(view))
     return Measured(
         out, record, recorder.counters, len(conditions(plan)), recorder.sample_rate
     )
@@ -209,16 +210,20 @@ def _setup(plan: MeasurePlan, opened: OpenChassis) -> Setup:
     return Setup(opened.chassis.address, plan.sensors, settings)
 
 
-def finish_session(path: Path) -> None:
+def finish_session(path: Path, progress: Callable[[float], None] | None = None) -> None:
     """Turn the file of a recording into a finished session, compressed, in its place.
 
     Until the new file is whole and on the disk, the old one stays.
+
+    Args:
+        path: of the file.
+        progress: called with the share that is written [-].
 
     Raises:
         InstrumentError: there is no room for it; the recording is safe as it is.
     """
     try:
-        finish_live(path, path, overwrite=True)
+        finish_live(path, path, overwrite=True, progress=progress)
     except UsageError as error:
         raise InstrumentError(
             f"'{path}' could not be finished ({error}); what was recorded is safe in "

@@ -32,8 +32,8 @@ class ModalNotes:
         unchecked: why linearity was not checked, or empty.
         limits: what cannot be in the data, a sentence each.
         sources: origin of the noise of FRFs from files, a sentence each.
-        possible: modes that the data hint at, and pairs taken by reciprocity, a
-            sentence each.
+        possible: modes that the data hint at, pairs taken by reciprocity, and
+            temperatures of the hits, a sentence each.
     """
 
     beyond: Beyond
@@ -68,10 +68,27 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
     levels = chain.levels or check_levels(judged)
     power = np.interp(chain.frf.frequency, levels.frequency, levels.force_power)
     beyond = look_beyond(chain.frf, chain.result.band, power)
-    possible = (*chain.result.remarks, *_reciprocal_words(chain, judged))
+    possible = (
+        *chain.result.remarks,
+        *_reciprocal_words(chain, judged),
+        *_temperature_words(judged),
+    )
     return ModalNotes(
         beyond, levels.linearity, levels.unchecked, limit_words(chain), (), possible
     )
+
+
+def _temperature_words(judged: Sequence[Recording]) -> tuple[str, ...]:
+    """State at which temperatures the accepted hits were made, where measured."""
+    found = [
+        hit.temperature
+        for recording in judged
+        for hit in accepted_hits(recording)
+        if hit.temperature is not None
+    ]
+    if not found:
+        return ()
+    return (f"accepted hits were made at {min(found):.1f} to {max(found):.1f} °C",)
 
 
 def _reciprocal_words(

@@ -13,7 +13,7 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 import numpy as np
 
@@ -38,12 +38,22 @@ def encode_record(record: object) -> bytes:
     Raises:
         TypeError: it holds something else.
     """
+    buffer = io.BytesIO()
+    write_record(record, buffer)
+    return buffer.getvalue()
+
+
+def write_record(record: object, file: IO[bytes]) -> None:
+    """Write a record to an open file as `encode_record` does; its arrays once.
+
+    Args:
+        record: see `encode_record`.
+        file: empty, open for writing.
+    """
     arrays: dict[str, np.ndarray[Any, Any]] = {}
     text = json.dumps(_plain(record, arrays)).encode()
     content: dict[str, Any] = {_TEXT: np.frombuffer(text, np.uint8), **arrays}
-    buffer = io.BytesIO()
-    np.savez(buffer, **content)
-    return buffer.getvalue()
+    np.savez(file, **content)
 
 
 def decode_record(data: bytes, kind: type[Record]) -> Record:

@@ -17,15 +17,21 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, is_dataclass
 from enum import Enum
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from pathlib import Path
+from shutil import copyfileobj
+from tempfile import TemporaryFile
 from typing import Any, TypeVar, cast
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.records.session import software_version
 from jointbench.signal.modal.lscf import Progress
 from jointbench.station.pipeline.code_version import stage_version
-from jointbench.station.pipeline.record_codec import decode_record, encode_record
+from jointbench.station.pipeline.record_codec import (
+    decode_record,
+    encode_record,
+    write_record,
+)
 
 _Record = TypeVar("_Record")
 _SUFFIX, _PART = ".stage", ".part"
@@ -129,7 +135,7 @@ class StageStore:
 
     def _keep(self, key: str, record: object) -> None:
         if self.folder is not None:
-            _write(self._path(key), _sealed(key, encode_record(record)))
+            _write(self._path(key), key, record)
 
 
 @dataclass(slots=True)
@@ -188,29 +194,37 @@ class StageRun:
         return (self.digest, name) if self.digest else (self.stages.digest(record),)
 
 
-def _sealed(key: str, data: bytes) -> bytes:
-    return f"{key} {sha256(data).hexdigest()}\n".encode() + data
+def _head(key: str, digest: str) -> bytes:
+    """Return the line before the content of a kept stage."""
+    return f"{key} {digest}\n".encode()
 
 
 def _unsealed(key: str, path: Path) -> bytes:
     if not path.is_file():
         raise FormatError(f"there is no file '{path}'")
-    data = path.read_bytes()
-    head, _, content = data.partition(b"\n")
-    if head + b"\n" != _sealed(key, content)[: len(head) + 1]:
+    with path.open("rb") as file:
+        head, content = file.readline(), file.read()
+    if head != _head(key, sha256(content).hexdigest()):
         raise FormatError(f"'{path}' does not hold what its name says")
     return content
 
 
-def _write(path: Path, data: bytes) -> None:
+def _write(path: Path, key: str, record: object) -> None:
     """Write whole or not at all; a disk that is full keeps nothing, and that is fine.
 
-    No fsync: after a power loss the digest detects damage, and the stage runs again.
+    The content is written before the line with its digest, which precedes it, so that
+    the bytes of a large record are in no memory. No fsync: after a power loss the
+    digest detects damage, and the stage runs again.
     """
     part = path.with_name(f"{path.name}.{os.getpid()}{_PART}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(data)
+        with TemporaryFile(dir=path.parent) as content, part.open("wb") as file:
+            write_record(record, content)
+            content.seek(0)
+            file.write(_head(key, file_digest(content, "sha256").hexdigest()))
+            content.seek(0)
+            copyfileobj(content, file)
         part.replace(path)
     except OSError:
         with suppress(OSError):

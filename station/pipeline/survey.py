@@ -27,10 +27,10 @@ def survey(recording: Recording, kalman: KalmanSettings | None) -> None:
     hits = accepted_hits(recording)
     if not hits:
         return
-    choose_window(recording)
-    for hit in hits:
+    for hit in hits:  # all of one hit together: its samples are unpacked once
         left_at_end(recording, hit)
         dead_channels(recording, hit)
+    choose_window(recording)
     if kalman is not None:
         observe_noise(recording, kalman)
     has_dropouts(recording)

@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 
-from jointbench.acquisition.records.recordings import Recording, Verdict
+from jointbench.acquisition.records.recordings import Hit, Recording, Verdict
 from jointbench.station.report.figures.hit_figures import (
     pulse_figures,
     response_figures,
@@ -18,7 +18,7 @@ from jointbench.station.screen.page_parts import (
 )
 
 REJECTED = frozenset(v.value for v in Verdict if v is not Verdict.OK)
-_COLUMNS = ("hit", "time [s]", "point", "peak [N]", "verdict", "reason")
+_COLUMNS = ("hit", "time [s]", "point", "peak [N]", "verdict")
 
 
 def hits_section(recordings: Sequence[Recording]) -> Section:
@@ -33,7 +33,7 @@ def hits_section(recordings: Sequence[Recording]) -> Section:
     items: list[Item] = [Text(words)]
     if bad:
         caption = f"{bad} rejected hits, each with its reason."
-        items.append(DataTable(caption, _COLUMNS, _rows(recordings, False), REJECTED))
+        items.append(_table(caption, recordings, accepted=False))
     title = (
         "Force of the hits, aligned at the trigger: accepted ones over each other, "
         "each rejected one alone."
@@ -43,25 +43,37 @@ def hits_section(recordings: Sequence[Recording]) -> Section:
         said, plots = response_figures(recordings)
         items += small_multiples(said, plots, "channels")
     if good:
-        table = DataTable("Accepted hits.", _COLUMNS[:-1], _rows(recordings, True))
+        table = _table("Accepted hits.", recordings, accepted=True)
         items.append(ItemGroup(f"{good} accepted hits", (table,)))
     return Section("hits", "Hits", tuple(items))
 
 
-def _rows(
-    recordings: Sequence[Recording], accepted: bool
-) -> tuple[tuple[str, ...], ...]:
-    """Return the rows of accepted hits, or those of rejected ones with reasons."""
-    return tuple(
+def _table(
+    caption: str, recordings: Sequence[Recording], *, accepted: bool
+) -> DataTable:
+    """Return accepted hits, or rejected ones with reasons; temperatures if measured."""
+    warm = any(hit.temperature is not None for r in recordings for hit in r.hits)
+    heads = (
+        *_COLUMNS,
+        *(("temperature [°C]",) if warm else ()),
+        *(() if accepted else ("reason",)),
+    )
+    rows = tuple(
         (
             f"{recording.name} / {number}",
             f"{recording.start_time + hit.trigger / recording.sample_rate:.3f}",
             hit.point,
             f"{hit.peak_force:.4g}",
             hit.verdict.value,
+            *((_degrees(hit),) if warm else ()),
             *(() if accepted else (hit.reason,)),
         )
         for recording in recordings
         for number, hit in enumerate(recording.hits, 1)
         if (hit.verdict is Verdict.OK) is accepted
     )
+    return DataTable(caption, heads, rows, frozenset() if accepted else REJECTED)
+
+
+def _degrees(hit: Hit) -> str:
+    return "-" if hit.temperature is None else f"{hit.temperature:.1f}"

@@ -15,6 +15,7 @@ from jointbench.station.screen.joint_text import interval_text
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.traces import Trace
+from jointbench.station.screen.value_text import with_sd
 
 TITLE = "Identified joint compared with the contact law (95 % intervals)"
 NOTE = (
@@ -50,7 +51,7 @@ def _state(row: TheoryRow) -> str:
     """Name a state by torque or preload, the one that its label lacks."""
     if row.torque is not None:
         return f"{row.state}, {row.torque:.4g} N m"
-    return f"{row.state}, {row.preload:.4g} N"
+    return f"{row.state}, {with_sd(row.preload, row.preload_sd)} N"
 
 
 def _estimate(one: StateEstimate) -> str:

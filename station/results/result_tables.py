@@ -98,12 +98,12 @@ def _name(group: h5py.Group) -> str:
 def _table(group: h5py.Group) -> ExportTable:
     columns = dict(_columns(group))
     labels = {
-        name.removesuffix("_label"): tuple(column.values.tolist())
+        name.removesuffix("_label"): tuple(np.asarray(column.values).tolist())
         for name, column in columns.items()
         if name.endswith("_label")
     }
     if "residue" in columns:
-        shapes = shapes_of(columns["residue"].values)
+        shapes = shapes_of(np.asarray(columns["residue"].values))
         columns["shape"] = ExportColumn("1", shapes, ("mode", "output"))
     return ExportTable(_name(group), columns, labels)
 

@@ -38,6 +38,7 @@ from jointbench.station.session_events.operator_events import (
 )
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )
@@ -57,6 +58,7 @@ Event = (
     | CableChanged
     | SamplesMissing
     | SessionEnded
+    | FileFinishing
     | SessionBegun
     | HitAveraged
     | GainForecast
@@ -73,7 +75,7 @@ _KINDS: Mapping[str, type[Event]] = {
         *(HitJudged, VerdictChanged, SettingProposed, CheckDone, BoltRead),
         *(RunBegun, Asked, ConditionDone, Said, Warned, CableChanged),
         *(SamplesMissing, SessionEnded, SessionBegun, HitAveraged, CommandAnswered),
-        *(GainForecast, PreloadRead),
+        *(GainForecast, PreloadRead, FileFinishing),
         *(NoteAdded, PauseChanged, WarningsSeen, ConditionReopened, BoltAsked),
     )
 }

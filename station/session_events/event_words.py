@@ -29,6 +29,7 @@ from jointbench.station.session_events.operator_events import (
 )
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )
@@ -70,6 +71,8 @@ def _words(event: Event) -> str:
             return channels
         case SamplesMissing(what=what, samples=samples, words=words):
             return f"{what}, {samples} samples missing ({words})"
+        case FileFinishing(share=share):
+            return f"{100 * share:.0f} % of the session file is written"
         case SessionEnded(interrupted=interrupted, reason=reason):
             return " ".join(("interrupted" if interrupted else "regularly", reason))
     return _view_words(event)

@@ -34,6 +34,7 @@ from jointbench.station.session_events.operator_events import (
 )
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )
@@ -69,8 +70,11 @@ class SessionState:
         paused: whether hits are ignored.
         lost: samples per channel known to be missing.
         gaps: number of gaps.
+        disconnected: whether the connection to the device is lost.
         open_loops: sensors that are disconnected, empty for none.
         ended: how the recording ended, None while it runs.
+        finishing: share of the session file that is written since then [-], None
+            before.
         first_time: of the first event, since 1970 [s]; None before.
         last_time: of the last event, since 1970 [s].
         last: number of the last event, -1 before.
@@ -99,8 +103,10 @@ class SessionState:
     paused: bool = False
     lost: int = 0
     gaps: int = 0
+    disconnected: bool = False
     open_loops: str = ""
     ended: SessionEnded | None = None
+    finishing: float | None = None
     first_time: float | None = None
     last_time: float = 0.0
     last: int = -1
@@ -109,6 +115,9 @@ class SessionState:
 def state_after(state: SessionState, events: Iterable[Stamped]) -> SessionState:
     """Return the state after further events, in their order."""
     for stamped in events:
+        if isinstance(stamped.event, FileFinishing):  # after the last of the log
+            state = replace(state, finishing=stamped.event.share)
+            continue
         state = replace(
             _after(state, stamped),
             first_time=stamped.time if state.first_time is None else state.first_time,
@@ -145,8 +154,13 @@ def _after(state: SessionState, stamped: Stamped) -> SessionState:
         case CableChanged(channels=channels):
             loops = "" if channels.startswith("all closed") else channels
             return replace(state, open_loops=loops)
-        case SamplesMissing(samples=samples):
-            return replace(state, lost=state.lost + samples, gaps=state.gaps + 1)
+        case SamplesMissing(what=what, samples=samples):
+            return replace(
+                state,
+                lost=state.lost + samples,
+                gaps=state.gaps + 1,
+                disconnected=what == "lost",
+            )
         case SessionEnded() as ended:
             return replace(state, ended=ended)
     return _after_command(state, stamped)

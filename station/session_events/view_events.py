@@ -78,3 +78,17 @@ class BoltAsked:
     bolt: int
     bolts: int
     target: float
+
+
+@dataclass(frozen=True, slots=True)
+class FileFinishing:
+    """The file of a recording that has ended becomes a finished session.
+
+    It comes after the end of the log, so it is shown and not stored.
+
+    Attributes:
+        share: of the samples that are written [-].
+    """
+
+    kind: ClassVar[str] = "finishing"
+    share: float

@@ -11,6 +11,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.shape_checks import mac_matrix
 from jointbench.station.drawing.palette import MODEL
+from jointbench.station.pipeline.recordings_by_preload import preload_sd
 from jointbench.station.report.figures.small_multiples import small_multiples
 from jointbench.station.report.findings.interval_words import NORMAL_95
 from jointbench.station.report.session_analysis import PreloadAnalysis
@@ -38,12 +39,19 @@ class TorqueStates:
     Attributes:
         title: torque or preload, with its unit.
         at: torque [N m] or preload [N], ascending, shape (n,).
+        at_sd: standard uncertainty of measured preloads [N], else 0, shape (n,).
         states: modes and links there.
     """
 
     title: str
     at: FloatArray
+    at_sd: FloatArray
     states: tuple[PreloadAnalysis, ...]
+
+    def cells(self) -> list[str]:
+        """Return what clamps each state as text, with one sd where measured."""
+        pairs = zip(self.at.tolist(), self.at_sd.tolist(), strict=True)
+        return [with_sd(value, sd) if sd else f"{value:g}" for value, sd in pairs]
 
 
 def torque_states(preloads: Sequence[PreloadAnalysis]) -> TorqueStates | None:
@@ -54,7 +62,7 @@ def torque_states(preloads: Sequence[PreloadAnalysis]) -> TorqueStates | None:
     torques = [_torque(one) for one in preloads]
     known = [t for t in torques if t is not None]
     by_torque = len(known) == len(preloads) and len(set(known)) == len(known)
-    if all(_is_measured(one) for one in preloads):
+    if all(_measured_sd(one) is not None for one in preloads):
         by_torque = False
     title = "torque on each bolt [N m]" if by_torque else "preload [N]"
     values = torques if by_torque else [one.preload for one in preloads]
@@ -67,13 +75,16 @@ def torque_states(preloads: Sequence[PreloadAnalysis]) -> TorqueStates | None:
         return None
     pairs.sort(key=lambda pair: pair[0])
     at = np.array([value for value, _ in pairs])
-    return TorqueStates(title, at, tuple(one for _, one in pairs))
+    spread = [0.0 if by_torque else _measured_sd(one) or 0.0 for _, one in pairs]
+    return TorqueStates(title, at, np.array(spread), tuple(one for _, one in pairs))
 
 
-def _is_measured(one: PreloadAnalysis) -> bool:
-    """Return whether the preload of a state was measured, beside the torque."""
+def _measured_sd(one: PreloadAnalysis) -> float | None:
+    """Return the sd of a preload that was measured [N]; None where it was not."""
     recordings = one.modal.recordings
-    return bool(recordings) and all(r.preload_sd is not None for r in recordings)
+    if not all(r.preload_sd is not None for r in recordings):
+        return None
+    return preload_sd(recordings)
 
 
 def _torque(one: PreloadAnalysis) -> float | None:
@@ -195,9 +206,10 @@ def _mode_plot(
     damping = np.array([100 * m.damping_ratio[k] for m, k in picked])
     wide = NORMAL_95 * np.array([m.frequency_sd[k] for m, k in picked])
     ratio_wide = 100 * NORMAL_95 * np.array([m.damping_ratio_sd[k] for m, k in picked])
+    at, at_wide = states.at[seen], NORMAL_95 * states.at_sd[seen]
     traces = [
-        _points(states.at[seen], frequency, wide, "y"),
-        _points(states.at[seen], damping, ratio_wide, "y2"),
+        _points(at, frequency, wide, "y", at_wide),
+        _points(at, damping, ratio_wide, "y2", at_wide),
     ]
     plot = figure(
         traces,
@@ -209,34 +221,39 @@ def _mode_plot(
     return Plot(f"trend-mode-{number}", caption, plot, _HEIGHT)
 
 
-def _points(x: FloatArray, y: FloatArray, wide: FloatArray, place: str) -> Figure:
+def _points(
+    x: FloatArray, y: FloatArray, wide: FloatArray, place: str, x_wide: FloatArray
+) -> Figure:
     trace = markers(x, y, "", color=MODEL, size=7, axes=("x", place), error=wide)
     line = {"color": MODEL, "width": 1, "dash": "dot"}
+    if x_wide.any():
+        trace = {**trace, "error_x": {"array": x_wide.tolist()}}
     return {**trace, "mode": "lines+markers", "line": line, "showlegend": False}
 
 
 def _link(states: TorqueStates, name: str, number: int) -> Plot | None:
     """Return one parameter over its states; None where it is never identifiable."""
-    found = []
-    for at, state in zip(states.at, states.states, strict=True):
+    found, unit = [], ""
+    clamped = zip(states.at, states.at_sd, states.states, strict=True)
+    for at, at_sd, state in clamped:
         joint = state.joint
         known = [] if joint is None else [p for p in joint.parameters if p.name == name]
         if known and known[0].identifiable:
             low, high = known[0].interval
             value = known[0].value
-            found.append((at, value, low or value, high or value, known[0].unit))
+            found.append((at, at_sd, value, low or value, high or value))
+            unit = known[0].unit
     if not found:
         return None
-    x, y, lower, upper = (np.array([row[k] for row in found], float) for k in range(4))
+    x, x_sd, y, lower, upper = np.array(found, float).T
     trace = {
-        **_points(x, y, upper - y, "y"),
+        **_points(x, y, upper - y, "y", NORMAL_95 * x_sd),
         "error_y": {
             "symmetric": False,
             "array": (upper - y).tolist(),
             "arrayminus": (y - lower).tolist(),
         },
     }
-    unit = found[0][4]
     kind = name.rpartition(".")[2] or name
     plot = figure([trace], axis(states.title), axis(f"{kind} [{unit}]"))
     return Plot(f"trend-link-{number}", name, plot, 240)
@@ -247,14 +264,14 @@ def _mode_table(
 ) -> DataTable:
     rows = []
     for number, track in enumerate(tracks, 1):
-        for at, model, k in zip(states.at, models, track.tolist(), strict=True):
+        for at, model, k in zip(states.cells(), models, track.tolist(), strict=True):
             if k >= 0:
                 f, sd = model.natural_frequency[k], model.frequency_sd[k]
                 zeta, zeta_sd = model.damping_ratio[k], model.damping_ratio_sd[k]
                 cells = with_sd(f, sd), with_sd(100 * zeta, 100 * zeta_sd)
             else:
                 cells = "-", "-"
-            rows.append((str(number), f"{at:g}", *cells))
+            rows.append((str(number), at, *cells))
     return DataTable(
         "Modes by state, with one standard deviation; - where a mode was not found.",
         ("mode", states.title, "frequency [Hz]", "damping ratio [%]"),
@@ -265,12 +282,12 @@ def _mode_table(
 def _link_table(states: TorqueStates, names: Sequence[str]) -> DataTable:
     rows = []
     for name in names:
-        for at, state in zip(states.at, states.states, strict=True):
+        for at, state in zip(states.cells(), states.states, strict=True):
             joint = state.joint
             known = [] if joint is None else joint.parameters
             for one in known:
                 if one.name == name:
-                    rows.append((name, f"{at:g}", parameter_text(one), one.unit))
+                    rows.append((name, at, parameter_text(one), one.unit))
     return DataTable(
         "Identified links by state (± one standard deviation; admissible range if not "
         "identifiable).",

@@ -288,7 +288,10 @@ def test_a_session_finished_piece_by_piece_is_the_file_that_is_written_whole(
         live.append(block(0, 1000), segment=1, first=0)
         live.log({"kind": "end"})
     write_session(read_session(path), tmp_path / "whole.h5")
-    finish_live(path, tmp_path / "pieces.h5")
+    shares: list[float] = []
+    finish_live(path, tmp_path / "pieces.h5", progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
     with (
         h5py.File(tmp_path / "whole.h5") as whole,
         h5py.File(tmp_path / "pieces.h5") as pieces,

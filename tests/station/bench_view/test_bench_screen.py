@@ -52,6 +52,7 @@ from jointbench.station.session_events.operator_events import (
 from jointbench.station.session_events.session_state import SessionState, state_after
 from jointbench.station.session_events.view_events import (
     BoltAsked,
+    FileFinishing,
     HitAveraged,
     SessionBegun,
 )
@@ -137,6 +138,7 @@ STATES: dict[str, tuple[Event, ...]] = {
     "refused": (BEGUN, RUN, ASKED, REFUSED),
     "done": (BEGUN, RUN, ASKED, ConditionDone("20 Nm, point 1", True), LONG),
     "ended": (BEGUN, RUN, ASKED, hit(0), averaged(0), SessionEnded(True)),
+    "finishing": (BEGUN, RUN, SessionEnded(False), FileFinishing(0.456)),
 }
 
 
@@ -147,6 +149,32 @@ def lines(
     around = ViewContext("/long/" * 30 + "s.h5", 3_000_000_000, 1010.0, LEVELS)
     look = Look(width, height, prompt=prompt, keys=KEYS)
     return [line.plain for line in session_lines(after(*events), around, look)]
+
+
+def test_an_ended_session_says_how_far_its_file_is_written() -> None:
+    """Finishing the file of some hours takes minutes."""
+    assert any("46 % of the session file" in one for one in lines(STATES["finishing"]))
+
+
+@pytest.mark.parametrize(
+    ("events", "words"),
+    [
+        ((SamplesMissing("lost", 0, 9, 0, 0.0, "gone"),), "is lost; hits wait"),
+        (
+            (
+                SamplesMissing("lost", 0, 9, 0, 0.0, "gone"),
+                SamplesMissing("back", 0, 9, 0, 2.0, "back"),
+            ),
+            "strike point 1",
+        ),
+        ((ConditionDone("20 Nm, point 1", False),), "the next point follows"),
+    ],
+)
+def test_no_hit_is_asked_for_that_would_not_count(
+    events: tuple[Event, ...], words: str
+) -> None:
+    """While the device is away, and between a point and the next one."""
+    assert any(words in one for one in lines((BEGUN, RUN, ASKED, *events)))
 
 
 @pytest.mark.parametrize("name", STATES)

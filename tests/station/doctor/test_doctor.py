@@ -8,9 +8,9 @@ import pytest
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.records.recordings import Quantity
-from jointbench.station.doctor.bench_finding import BenchFinding, Health
+from jointbench.station.doctor.bench_finding import BenchFinding, Health, bad
 from jointbench.station.doctor.noise_checks import noise_findings
-from jointbench.station.doctor.run_doctor import run_doctor
+from jointbench.station.doctor.run_doctor import remedy_lines, run_doctor
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SENSOR = Sensor(
@@ -44,6 +44,26 @@ def test_a_good_bench_is_found_good_from_driver_to_hit() -> None:
         *("driver", "devices", "sensors", "noise", "hit")
     }
     assert "as in the plan" in found["sensors", "a1"].seen
+
+
+def test_a_hit_is_asked_of_no_washer_and_no_thermometer() -> None:
+    """They are slow, and a hit leaves them where they are."""
+    source = "sim:plates?seed=1&modules=2&washers=2&thermometer=1"
+    found = findings(source, "plates-preload.toml")
+    assert {f.health for f in found.values()} == {Health.GOOD}
+    assert {what for step, what in found if step == "hit"} == {
+        *("hammer", "force", "a1", "a2", "a6")
+    }
+
+
+def test_findings_with_one_remedy_share_its_line() -> None:
+    """In the order found; a URL keeps one colon."""
+    found = [
+        bad("noise", "a1", "x", "check"),
+        bad("driver", "ni:", "y", "install"),
+        bad("noise", "a2", "z", "check"),
+    ]
+    assert remedy_lines(found) == ["a1, a2: check", "ni: install"]
 
 
 def test_a_swapped_sensor_an_open_cable_and_a_silent_hammer_are_found() -> None:

@@ -58,6 +58,13 @@ def test_every_kind_of_trace_is_drawn(trace, kind):
     assert kind in drawn(*trace)
 
 
+def test_an_interval_along_x_is_a_level_line_within_the_axis():
+    """From its left end to its right one, both of which the axis holds."""
+    trace = {**markers([2.0], [1.0], "m"), "error_x": {"array": [1.0]}}
+    (span,) = re.findall(r'class="ln span[^>]* d="M(\d+) \d+H(\d+)"', drawn(trace))
+    assert 0 < int(span[0]) < int(span[1]) < 8000
+
+
 def test_a_pair_of_axes_is_a_panel_and_an_axis_over_another_is_none():
     """Stacked panels share one axis, whose marks stand below the last."""
     traces = (line(X, X, "a"), line(X, X, "b", axes=("x", "y2")))

@@ -11,7 +11,11 @@ from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.predict import predict_contact
 from jointbench.analysis.contact.surface import ContactSurface
-from jointbench.station.joints.contact_comparison import against_theory, theory_json
+from jointbench.station.joints.contact_comparison import (
+    against_theory,
+    known_preloads,
+    theory_json,
+)
 from jointbench.station.joints.structure_contact import TheoryTable
 from jointbench.station.joints.theory_records import (
     IdentifiedState,
@@ -76,13 +80,16 @@ def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
     return exit_code(app, debug=False)
 
 
-def state(preload: float, frequency: float | None = 200.0) -> IdentifiedState:
+def state(
+    preload: float, frequency: float | None = 200.0, measured_sd: float | None = None
+) -> IdentifiedState:
     """Return a state with one stiffness and one damping."""
     values = {
         JointQuantity.NORMAL_STIFFNESS: StateEstimate(5e11, 4e11, 6e11),
         JointQuantity.NORMAL_DAMPING: StateEstimate(240.0, 220.0, 260.0),
     }
-    return IdentifiedState("hits", preload, frequency, values)
+    clamped = TABLE.spread_preload(preload, measured_sd)
+    return IdentifiedState("hits", clamped, frequency, values)
 
 
 def test_the_command_lays_printed_frequencies_beside_three_models(
@@ -167,6 +174,31 @@ def test_the_prediction_is_that_of_the_contact_law() -> None:
         assert found.high is not None
         assert_allclose(found.value, wanted, rtol=1e-12)
         assert found.low < found.value < found.high
+
+
+def test_the_uncertainty_of_a_measured_preload_is_in_the_interval() -> None:
+    """It takes the place of what the nut factor leaves open, here 15 %."""
+    exact, washers, torque = (
+        against_theory([state(25e3, None, sd)], SURFACE, TABLE)[0]
+        for sd in (0.0, 500.0, None)
+    )
+    assert (washers.preload_sd, torque.preload_sd) == (500.0, 25e3 * 0.15)
+    widths = []
+    for row in (exact, washers, torque):
+        found = row.predicted["ke_3d"]
+        assert found is not None
+        assert found.low is not None
+        assert found.high is not None
+        widths.append(found.high - found.low)
+    assert widths[0] < widths[1] < widths[2]
+
+
+def test_a_measured_preload_of_a_session_reaches_the_comparison() -> None:
+    """With its uncertainty; one that the model states is by torque again."""
+    stated = TABLE.model_copy(update={"preloads": {"b": 2e4}})
+    found = known_preloads(stated, {"a": (1e4, 200.0), "b": (1e4, 200.0)})
+    assert (found["a"].value, found["a"].sd) == (1e4, 200.0)
+    assert (found["b"].value, found["b"].sd) == (2e4, 2e4 * 0.15)
 
 
 def test_damping_is_the_loss_at_the_states_own_frequency() -> None:

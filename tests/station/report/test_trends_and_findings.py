@@ -54,7 +54,7 @@ def model(frequency, shapes=None):
     )
 
 
-def state(preload, found, torque=None, stiffness=None):
+def state(preload, found, torque=None, stiffness=None, preload_sd=None):
     """Return modes at one preload, with a torque in the provenance."""
     detail = () if torque is None else (("torque", torque),)
     recording = Recording(
@@ -63,6 +63,7 @@ def state(preload, found, torque=None, stiffness=None):
         1000.0,
         (Channel("force", Quantity.FORCE),),
         provenance=(Step("recorded", detail),),
+        preload_sd=preload_sd,
     )
     chain = SimpleNamespace(
         result=SimpleNamespace(model=found), recordings=(recording,)
@@ -121,3 +122,18 @@ def test_a_session_of_several_torques_has_frequency_damping_and_stiffness_over_i
     modes, links = (one for one in section.items if isinstance(one, DataTable))
     assert len(modes.rows) == 4
     assert links.rows[0][:2] == ("joint.stiffness", "10")
+
+
+def test_a_measured_preload_is_shown_with_its_uncertainty():
+    """Level intervals in the figures, one standard deviation in the tables."""
+    several = [
+        state(1e4, model([100]), 10.0, 5e7, preload_sd=200.0),
+        state(2e4, model([110]), 20.0, 6e7, preload_sd=300.0),
+    ]
+    section = trends_section(several)
+    assert section.title == "Modes and joint over preload"
+    plots = {plot.identifier: plot.figure for plot in figures_in(section.items)}
+    for trace in (plots["trend-mode-1"]["data"][1], plots["trend-link-0"]["data"][0]):
+        assert trace["error_x"]["array"] == pytest.approx([392.0, 588.0], rel=1e-3)
+    modes, links = (one for one in section.items if isinstance(one, DataTable))
+    assert modes.rows[0][1] == links.rows[0][1] == "10000 ± 200"

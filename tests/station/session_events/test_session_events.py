@@ -38,6 +38,7 @@ from jointbench.station.session_events.hit_events import (
     VerdictChanged,
 )
 from jointbench.station.session_events.session_state import SessionState, state_after
+from jointbench.station.session_events.view_events import FileFinishing
 
 FIRST = HitJudged(0, 0, 10, 90, "1", 150.0, "ok", 0.0, "single clean pulse")
 OTHER = HitJudged(1, 100, 110, 190, "1", 20.0, "weak", 0.1, "below a third")
@@ -90,6 +91,13 @@ def test_an_event_goes_through_json_and_back(event: Event) -> None:
     assert back == Stamped(7, 0.0, 0, event)
     assert type(back.event) is type(event)
     assert len(event_words(event).splitlines()) == 1
+
+
+def test_the_share_of_a_file_that_is_written_changes_nothing_else() -> None:
+    """It comes after the last event of the log, whose number and time stay."""
+    before = state_after(SessionState(), stamped())
+    after = state_after(before, (Stamped(-1, 0.0, 0, FileFinishing(0.25)),))
+    assert after == replace(before, finishing=0.25)
 
 
 def test_other_entries_of_a_log_are_no_events_but_keep_their_number() -> None:
