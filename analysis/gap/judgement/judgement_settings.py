@@ -140,12 +140,6 @@ class JudgementSettings:
         "difference from the cost of two rounds before below which a fit alternates",
         "pair 107076: 105 s to be unknown",
     )
-    most_leaps: int = numerical(
-        1,
-        "leaps",
-        "rises from the noise to far above it after which fit and noise alternate",
-        "softening campaigns 1 and 2: 16 and 30 rounds between chi2/dof 1.01 and 1.9",
-    )
     overtaking_rounds: int = numerical(
         2,
         "rounds",

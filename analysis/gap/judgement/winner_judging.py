@@ -3,7 +3,6 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -243,7 +242,7 @@ def _part_of(fewer: Fit, more: Fit) -> bool:
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     """Alternate fit and noise estimate until they converge or the fit diverges.
 
-    A trend that counts as scatter in some rounds only makes the iteration alternate
+    A trend that counts as scatter in every other round makes the iteration alternate
     without end, and a law that leaves a residual makes it wander. Then the fit with the
     higher cost is used: it has the least scatter.
     """
@@ -254,9 +253,8 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
         rounds = [*rounds, (bench, fit)][-JUDGEMENT.wandering_rounds :]
-        alternates = fit.cost > costs[-1] and (
-            abs(fit.cost - costs[-2]) < JUDGEMENT.repeated_cost
-            or _leaps([*costs[2:], fit.cost], bench.blocks.dof) > JUDGEMENT.most_leaps
+        alternates = (
+            abs(fit.cost - costs[-2]) < JUDGEMENT.repeated_cost and fit.cost > costs[-1]
         )
         converged = abs(fit.cost - costs[-1]) < JUDGEMENT.settled_cost
         if converged or alternates or far_off(bench, fit):
@@ -265,12 +263,6 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
         if _wanders(costs[2:], bench.blocks.dof):
             return max(rounds, key=lambda found: found[1].cost)
     return bench, fit
-
-
-def _leaps(costs: Sequence[float], dof: int) -> int:
-    """Return how often the cost rose from the noise to far above it."""
-    limit = (1.0 + JUDGEMENT.wandering_excess) * dof
-    return sum(a <= limit < b for a, b in pairwise(costs))
 
 
 def _wanders(costs: Sequence[float], dof: int) -> bool:

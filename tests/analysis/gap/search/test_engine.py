@@ -346,32 +346,6 @@ def test_an_alternating_noise_estimate_ends_at_the_smaller_one() -> None:
     assert len(bench.rounds) <= 4
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Wavering(Alternating):
-    """A curve whose smaller noise estimate is another one each time."""
-
-    def residual(
-        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
-    ) -> FloatArray:
-        """Return (model - measurement) / 0.01, or over less and less."""
-        r = Curve.residual(self, base, terms, resolution)
-        return r * (2.0 + 0.2 * len(self.rounds) if self.quiet else 1.0)
-
-
-def test_a_noise_estimate_that_rises_from_the_noise_twice_ends_at_the_smaller_one() -> (
-    None
-):
-    """Its costs never repeat, and would not in thirty rounds."""
-    plain = curve(cube=0.2)
-    bench = Wavering(plain.measured, plain.candidates)
-    base = minimise(make_problem(bench, ()), np.zeros(1))
-    fit = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
-    last, _, _ = judging.judge(bench, [fit], base, lambda line: None)
-    assert isinstance(last, Wavering)
-    assert last.quiet
-    assert len(last.rounds) <= 8
-
-
 def test_confidence_never_falls_with_more_evidence() -> None:
     """A wider margin, more slack or one effect instead of two never lowers it."""
     poor = Evidence(15.0, 0.1, 5.0, 2)
