@@ -29,6 +29,8 @@ def value_and_interval(
     ('59.984 MN/m', '95 %: 59.898 to 60.070 MN/m')
     >>> value_and_interval(197.969091, 3.3e-5, "Hz", prefix=False)
     ('197.9691 Hz', '95 %: 197.9690 to 197.9692 Hz')
+    >>> value_and_interval(0.0736, 0.0024, "-", prefix=False)
+    ('0.0736', '95 %: 0.0689 to 0.0783')
     """
     if not isfinite(value):
         return "-", ""
@@ -67,7 +69,8 @@ def _gap(name: str) -> str:
 
 def _scaled(value: float, unit: str, *, prefix: bool) -> tuple[float, str]:
     """Return a value in a readable multiple of its unit, and that unit."""
-    unit = unit.replace("^2", "²").replace("^3", "³")
+    # A number without a unit, "-" in tables, stands alone.
+    unit = "" if unit == "-" else unit.replace("^2", "²").replace("^3", "³")
     if not value:
         return value, unit
     power = 3 * floor(log10(abs(value)) / 3)

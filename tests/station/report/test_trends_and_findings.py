@@ -24,6 +24,7 @@ from jointbench.station.screen.page_parts import DataTable
 @pytest.mark.parametrize(
     ("value", "sd", "unit", "said"),
     [
+        (0.0736, 0.0024, "-", ("0.0736", "95 %: 0.0689 to 0.0783")),
         (5.9984e7, 4.4e4, "N/m", ("59.984 MN/m", "95 %: 59.898 to 60.070 MN/m")),
         (1.485, 0.0031, "", ("1.4850", "95 %: 1.4789 to 1.4911")),
         (2.0e7, None, "N/m", ("20 MN/m", "")),
