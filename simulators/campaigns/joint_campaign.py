@@ -32,10 +32,10 @@ _HITS = (
     (0, 1000.0),
 )
 """Struck body and level [N] at each torque; one condition is there twice."""
-FACE_POINTS = 256
+_FACE_POINTS = 256
 FACE_SPACING = 2e-6
 """Of the maps of the roughness of one surface [m]."""
-FACE_RMS = 0.6e-6
+_FACE_RMS = 0.6e-6
 """Rms height of the roughness of one surface [m]."""
 _LONGEST = 80e-6
 """Wavelength beyond which the roughness of a surface is level [m]."""
@@ -118,7 +118,7 @@ def joint_campaign(
 
 
 def pressed_joint(
-    seed: int, rng: np.random.Generator, rms: float = FACE_RMS
+    seed: int, rng: np.random.Generator, rms: float = _FACE_RMS
 ) -> TightenedJoint:
     """Press two ground surfaces together at six torques.
 
@@ -151,7 +151,7 @@ def pressed_joint(
     return TightenedJoint(design, heights, clean, np.array(scattered))
 
 
-def ground_surfaces(seed: int, rms: float = FACE_RMS) -> FloatArray:
+def ground_surfaces(seed: int, rms: float = _FACE_RMS) -> FloatArray:
     """Return the roughness of the lower and the upper surface [m], shape (2, n, n).
 
     Args:
@@ -160,7 +160,7 @@ def ground_surfaces(seed: int, rms: float = FACE_RMS) -> FloatArray:
     """
     return np.stack(
         [
-            random_face(FACE_POINTS, FACE_SPACING, rms, _LONGEST, 2 * seed + k)
+            random_face(_FACE_POINTS, FACE_SPACING, rms, _LONGEST, 2 * seed + k)
             for k in (0, 1)
         ]
     )

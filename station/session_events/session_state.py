@@ -74,7 +74,7 @@ class SessionState:
         open_loops: sensors that are disconnected, empty for none.
         ended: how the recording ended, None while it runs.
         finishing: share of the session file that is written since then [-], None
-            before.
+            before, and when all of it is.
         first_time: of the first event, since 1970 [s]; None before.
         last_time: of the last event, since 1970 [s].
         last: number of the last event, -1 before.
@@ -116,7 +116,8 @@ def state_after(state: SessionState, events: Iterable[Stamped]) -> SessionState:
     """Return the state after further events, in their order."""
     for stamped in events:
         if isinstance(stamped.event, FileFinishing):  # after the last of the log
-            state = replace(state, finishing=stamped.event.share)
+            share = stamped.event.share
+            state = replace(state, finishing=share if share < 1.0 else None)
             continue
         state = replace(
             _after(state, stamped),
