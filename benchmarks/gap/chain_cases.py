@@ -88,6 +88,16 @@ class ScaledLaw:
         """Of the law."""
         return self.law.parameters
 
+    @property
+    def factor_sd(self) -> float:
+        """Of the law [-]."""
+        return self.law.factor_sd
+
+    @property
+    def roughness_alone(self) -> float | None:
+        """Of the law [m]."""
+        return self.law.roughness_alone
+
     def log_stiffness(
         self, log_preload: np.ndarray, coordinates: np.ndarray
     ) -> np.ndarray:
