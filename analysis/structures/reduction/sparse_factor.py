@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sparse factors by SuperLU, or Pardiso where it is installed.
+"""Sparse factors by SuperLU, ordered by METIS, or by Pardiso where it is installed.
 
 Every solve is checked by its residual.
 """
@@ -16,6 +16,7 @@ from scipy.sparse.linalg import splu
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
+from jointbench.analysis.structures.reduction.fill_ordering import dissection_order
 
 Solve = Callable[[FloatArray], FloatArray]
 
@@ -84,10 +85,12 @@ def _require_small_residual(
 
 
 def _superlu(matrix: Sparse) -> Solve:
+    order = dissection_order(matrix)
+    ordered = matrix if order is None else matrix[order][:, order]
     try:
         factor = splu(
-            csc_array(matrix),
-            permc_spec="MMD_AT_PLUS_A",
+            csc_array(ordered),
+            permc_spec="MMD_AT_PLUS_A" if order is None else "NATURAL",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )
@@ -98,7 +101,11 @@ def _superlu(matrix: Sparse) -> Solve:
         ) from error
 
     def solve(load: FloatArray) -> FloatArray:
-        return np.asarray(factor.solve(np.ascontiguousarray(load)))
+        if order is None:
+            return np.asarray(factor.solve(np.ascontiguousarray(load)))
+        answer = np.empty(load.shape)
+        answer[order] = factor.solve(load[order])
+        return answer
 
     return solve
 
