@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
-from jointbench.analysis.structures.reduction.fill_ordering import dissection_order
+from jointbench.analysis.structures.matrices.fill_ordering import dissection_order
 
 Solve = Callable[[FloatArray], FloatArray]
 

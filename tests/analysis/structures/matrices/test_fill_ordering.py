@@ -7,7 +7,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
-from jointbench.analysis.structures.reduction.fill_ordering import dissection_order
+from jointbench.analysis.structures.matrices.fill_ordering import dissection_order
 from jointbench.analysis.structures.reduction.sparse_factor import Solver, factorise
 
 pytest.importorskip("pymetis", reason="no wheel of METIS for this system")
