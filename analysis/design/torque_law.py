@@ -143,15 +143,6 @@ def torque_steps(
     return tuple(steps)
 
 
-def exponent_deviations(request: TorqueRequest) -> FloatArray:
-    """Return the sd of each parameter's exponent after the tests so far, shape (p,)."""
-    size, bound = request.law.deviation.size, request.law.bound
-    found = np.zeros(size)
-    own = law_covariance(request, request.known)
-    found[bound] = np.sqrt(np.diag(own)[size : size + bound.size])
-    return found
-
-
 def law_covariance(request: TorqueRequest, tests: Sequence[TorqueTest]) -> FloatArray:
     """Return the covariance of parameters, exponents, and departures of states.
 
@@ -180,7 +171,7 @@ def law_covariance(request: TorqueRequest, tests: Sequence[TorqueTest]) -> Float
     )
     for at, test in enumerate(tests):
         turn = _turn(law, test.log_ratio, at, own.size)
-        part = turned_pairs(test.pairs, turn)
+        part = _turned_pairs(test.pairs, turn)
         whole = PairInformation(
             whole.common + part.common, whole.cross + part.cross, whole.own + part.own
         )
@@ -188,7 +179,7 @@ def law_covariance(request: TorqueRequest, tests: Sequence[TorqueTest]) -> Float
     return plan_covariance(whole, replace(request.prior, deviation=own), plan)
 
 
-def turned_pairs(pairs: PairInformation, turn: FloatArray) -> PairInformation:
+def _turned_pairs(pairs: PairInformation, turn: FloatArray) -> PairInformation:
     """Return information on coordinates z, of which the parameters are `turn` @ z.
 
     Args:
