@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from jointbench.station.library.gaps import gap
     from jointbench.station.library.hit_results import hits
     from jointbench.station.library.identified_joints import identify
+    from jointbench.station.library.joint_designs import design
     from jointbench.station.library.joint_pressures import pressure
     from jointbench.station.library.machines import machine
     from jointbench.station.library.measurements import open_measurement as open  # noqa: A004
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "archive": ("archives", "archive"),
     "contact": ("contact_laws", "contact"),
+    "design": ("joint_designs", "design"),
     "desk": ("desks", "desk"),
     "example": ("example_files", "example"),
     "frf": ("frf_results", "frf"),
@@ -60,6 +62,7 @@ _PLACES = {
 __all__ = [
     "archive",
     "contact",
+    "design",
     "desk",
     "example",
     "frf",

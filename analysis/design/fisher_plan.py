@@ -2,8 +2,8 @@
 """Information of a test plan: which hits and which sensors determine parameters.
 
 A pair of a sensor and a hit point informs on the common parameters through the slopes
-of its FRF. Gains of sensors and of hits are nuisances with priors: they are eliminated
-(Schur complement). All parameters are logarithms.
+of its FRF. Gains of sensors and of hits are nuisances with priors: they are eliminated.
+All parameters are logarithms.
 """
 
 from collections.abc import Sequence
@@ -12,11 +12,19 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.acquisition.basics.arrays import (
+    ComplexArray,
+    FloatArray,
+    IntArray,
+    freeze,
+)
 from jointbench.acquisition.basics.errors import BadData
-
-# Prior precision that stands for none: a standard deviation of 1e4 in ln.
-_OPEN = 1e-8
+from jointbench.analysis.design.information import (
+    expected_covariance,
+    information_of,
+    prior_information,
+    without_nuisances,
+)
 
 
 class Criterion(StrEnum):
@@ -92,6 +100,21 @@ class HitPlan:
     repeats: float = 1.0
 
 
+def pairs_of(slopes: ComplexArray, response: ComplexArray) -> PairInformation:
+    """Return the information of pairs; a gain is a parameter like any other.
+
+    Args:
+        slopes: derivatives of the FRFs by the common parameters over the standard
+            deviation of their real part, shape (n_sensors, n_hits, n_lines, p).
+        response: the FRFs over the same, shape (n_sensors, n_hits, n_lines): their
+            derivative by the logarithm of a gain.
+    """
+    whole = information_of(np.concatenate([slopes, response[..., None]], axis=-1))
+    return PairInformation(
+        whole[..., :-1, :-1], whole[..., :-1, -1], whole[..., -1, -1]
+    )
+
+
 def plan_covariance(
     pairs: PairInformation, prior: PlanPrior, plan: HitPlan
 ) -> FloatArray:
@@ -104,15 +127,10 @@ def plan_covariance(
 
     Returns:
         Of the logarithms; large where the plan and the prior leave one open.
-
-    Source:
-        Fedorov 1972, Theory of Optimal Experiments, ch. 2; the Schur complement takes
-        the nuisances out.
     """
     at = np.ix_(plan.sensors, plan.hits)
-    with np.errstate(divide="ignore"):
-        known = np.where(np.isfinite(prior.deviation), 1.0 / prior.deviation**2, _OPEN)
-    whole = np.diag(known) + plan.repeats * pairs.common[at].sum(axis=(0, 1))
+    whole = prior_information(prior.deviation)
+    whole = whole + plan.repeats * pairs.common[at].sum(axis=(0, 1))
     own, cross = plan.repeats * pairs.own[at], plan.repeats * pairs.cross[at]
     blocks: list[FloatArray] = []
     links: list[FloatArray] = []
@@ -126,9 +144,8 @@ def plan_covariance(
         nuisance = blocks[0]
         if len(blocks) == 2:
             nuisance = np.block([[blocks[0], own], [own.T, blocks[1]]])
-        link = np.hstack(links)
-        whole = whole - link @ np.linalg.solve(nuisance, link.T)
-    return _inverse(whole)
+        whole = without_nuisances(whole, np.hstack(links), nuisance)
+    return expected_covariance(whole)
 
 
 def plan_width(covariance: FloatArray, wanted: IntArray, criterion: Criterion) -> float:
@@ -181,13 +198,3 @@ def hits_needed(
         middle = (low + high) // 2
         low, high = (low, middle) if reached(middle) else (middle, high)
     return high
-
-
-def _inverse(matrix: FloatArray) -> FloatArray:
-    """Return the inverse of an information matrix, scaled so that it is stable."""
-    size = np.sqrt(np.maximum(np.diag(matrix), _OPEN))
-    scaled = matrix / np.outer(size, size)
-    value, vector = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    value = np.maximum(value, 1e-14 * value[-1])
-    inverse = (vector / value) @ vector.T
-    return np.asarray(inverse / np.outer(size, size))

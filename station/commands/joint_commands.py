@@ -206,7 +206,8 @@ def design_command(
         bool,
         typer.Option(
             "--next",
-            help="[sensors] and [hits] are measured: what would help most next.",
+            help="[sensors] and [hits] are measured: the hit, sensor, torque or mass "
+            "that would help most next.",
         ),
     ] = False,
     mass: Annotated[
@@ -225,7 +226,10 @@ def design_command(
     ] = None,
     plan: Annotated[
         Path | None,
-        typer.Option(metavar="PATH", help="Plan of 'measure' to take sensors from."),
+        typer.Option(
+            metavar="PATH",
+            help="Plan of 'measure' to take sensors from; with --next also torques.",
+        ),
     ] = None,
     out: Annotated[
         Path | None,
@@ -242,10 +246,11 @@ def design_command(
     Examples:
         jointbench design plates.toml --plan bench.toml --out plan.toml
         jointbench design plates.toml --next --mass '200 g' --deviation '1 %'
+        jointbench design plates.toml --next --values joint.json --state day1@20000N
     """
     from jointbench.acquisition.basics.units import parse_value
     from jointbench.station.design.design_output import run_design
-    from jointbench.station.design.run_design import DesignRequest
+    from jointbench.station.design.design_records import DesignRequest
 
     request = DesignRequest(
         values,

@@ -2,6 +2,7 @@
 """A designed test on the terminal, as JSON, and as a plan for ``measure``."""
 
 import re
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,16 +10,23 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.station.design.run_design import (
+from jointbench.acquisition.basics.units import parse_value
+from jointbench.analysis.design.plan_search import NextStep
+from jointbench.station.design.design_records import (
     DesignedTest,
     DesignRequest,
-    designed_test,
+    NextTorque,
 )
+from jointbench.station.design.run_design import designed_test
 from jointbench.station.files.output_paths import check_outputs, write_text
 from jointbench.station.screen.terminal import console, table, working, write_json
 
 _SHOWN = 8
 _INTERVAL = 1.96
+_NO_TORQUE = (
+    "For a further torque, state that of the plan: design.torque, or design.states by "
+    "the labels of identified states."
+)
 _POINTS = re.compile(r"(?m)^points\s*=\s*\[[^\]]*\]")
 _POINT = re.compile(r"(?m)^point\s*=\s*\"[^\"]*\"")
 
@@ -50,6 +58,9 @@ def run_design(
     inputs = [one for one in (model, request.identified, template) if one is not None]
     check_outputs(inputs, [json_target])
     draft = None
+    if template is not None and request.measured:
+        measured = template.read_text(encoding="utf-8")
+        request = replace(request, plan_torques=_plan_torques(measured))
     if template is not None and out is not None:
         draft = template.read_text(encoding="utf-8")
         request = replace(request, plan_sensors=_plan_sensors(draft))
@@ -73,12 +84,8 @@ def show_design(found: DesignedTest, json_target: str | None) -> None:
     screen.print(
         table("Test plan", ("what", "points"), chosen, words=frozenset({0, 1}))
     )
-    rows = [
-        (name, _percent(found.deviation[at]), _percent(found.even[at]))
-        for at, name in enumerate(found.names)
-    ]
     columns = ("parameter", "expected 95 % [± %]", "evenly spread [± %]")
-    screen.print(table("Expected intervals", columns, rows))
+    screen.print(table("Expected intervals", columns, parameter_rows(found)))
     screen.print(
         f"Evenly spread points give intervals {found.ratio_even:.2f} times as wide, "
         f"the best of 200 random plans {found.ratio_random:.2f} times.",
@@ -91,11 +98,81 @@ def show_design(found: DesignedTest, json_target: str | None) -> None:
         )
     if found.steps:
         steps = [
-            (one.kind, _place(found, one.number), f"{100 * (1 - one.width):.1f}")
+            (one.kind, _place(found, one), f"{100 * (1 - one.width):.1f}")
             for one in found.steps[:_SHOWN]
         ]
-        heads = ("next step", "point", "narrower by [%]")
+        heads = ("next step", "where", "narrower by [%]")
         screen.print(table("What to add", heads, steps, words=frozenset({0, 1})))
+    if found.torques:
+        _show_torques(found, json_target)
+    elif found.steps:
+        screen.print(_NO_TORQUE, markup=False)
+
+
+def parameter_rows(found: DesignedTest) -> list[tuple[str, str, str]]:
+    """Return parameters with their expected intervals, and those of even spacing."""
+    return [
+        (name, _percent(found.deviation[at]), _percent(found.even[at]))
+        for at, name in enumerate(found.names)
+    ]
+
+
+def next_remarks(found: DesignedTest) -> list[str]:
+    """Return the best step of each kind, and what the best torque separates."""
+    best = {one.kind: one for one in reversed(found.steps)}
+    said = [
+        f"{one.kind} {_place(found, one)}: narrower by {100 * (1 - one.width):.1f} %"
+        for one in sorted(best.values(), key=lambda step: step.width)
+    ]
+    return [*said, torque_sentence(found)] if found.torques else said
+
+
+def _show_torques(found: DesignedTest, json_target: str | None) -> None:
+    """Print what the plan at one more torque buys, and what the best one separates."""
+    screen = console(json_target)
+    rows = [
+        (
+            f"{one.torque:.3g}",
+            f"{100 * (1 - one.step.width):.1f}",
+            f"{100 * (1 - one.step.law_width):.1f}",
+            f"{_INTERVAL * _widest_exponent(found, one):.2g}",
+            f"{100 * one.step.decides:.0f}",
+        )
+        for one in found.torques
+    ]
+    columns = (
+        "torque [N m]",
+        "joint narrower by [%]",
+        "law narrower by [%]",
+        "exponents to ±",
+        "laws distinguished [%]",
+    )
+    screen.print(table("The plan at one more torque", columns, rows))
+    screen.print(torque_sentence(found), markup=False)
+
+
+def torque_sentence(found: DesignedTest) -> str:
+    """Return the torque that says most of the law, and what it separates."""
+    best = min(found.torques, key=lambda one: one.step.law_width)
+    interval = _INTERVAL * _widest_exponent(found, best)
+    said = (
+        f"{best.torque:.3g} N m says most of the law over the torque: exponents to "
+        f"±{interval:.2g} (95 %), and of stiffnesses that grow with its powers 1/3, "
+        f"1/2 or 1 one is left in {100 * best.step.decides:.0f} % of outcomes."
+    )
+    if found.known_torques > 1:
+        return said
+    return f"One torque leaves open how the joint depends on it. {said}"
+
+
+def _widest_exponent(found: DesignedTest, one: NextTorque) -> float:
+    """Return the largest sd of the exponents of wanted parameters [-].
+
+    Args:
+        found: designed test.
+        one: torque.
+    """
+    return float(one.step.exponent_sd[list(found.wanted)].max())
 
 
 def plan_text(found: DesignedTest, template: str) -> str:
@@ -140,16 +217,43 @@ def design_json(found: DesignedTest) -> dict[str, Any]:
         "next": [
             {
                 "kind": one.kind,
-                "point": _place(found, one.number),
+                "point": _place(found, one),
                 "width_ratio": one.width,
             }
             for one in found.steps
         ],
+        "torques": [_torque_json(found, one) for one in found.torques],
     }
 
 
-def _place(found: DesignedTest, number: int) -> str:
-    return "all" if number < 0 else found.points[number]
+def _torque_json(found: DesignedTest, one: NextTorque) -> dict[str, Any]:
+    deviation = zip(found.names, one.step.exponent_sd.tolist(), strict=True)
+    return {
+        "torque": one.torque,
+        "width_ratio": one.step.width,
+        "law_width_ratio": one.step.law_width,
+        "exponent_sd": {name: sd for name, sd in deviation if sd > 0},
+        "laws_distinguished": one.step.decides,
+    }
+
+
+def _plan_torques(template: str) -> tuple[float, ...]:
+    """Return the torques of a plan of ``measure`` [N m].
+
+    Raises:
+        BadData: it is no TOML.
+    """
+    try:
+        hits = tomllib.loads(template).get("hits", {})
+    except tomllib.TOMLDecodeError as error:
+        raise BadData(f"the plan is no TOML: {error}") from error
+    return tuple(parse_value(one, "torque") for one in hits.get("torques", []))
+
+
+def _place(found: DesignedTest, step: NextStep) -> str:
+    if step.kind == "torque":
+        return f"{found.torques[step.number].torque:.3g} N m"
+    return "all" if step.number < 0 else found.points[step.number]
 
 
 def _percent(deviation: float) -> str:

@@ -2,13 +2,12 @@
 """``jointbench design``: hit points and sensors, before the first hit."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.design.fisher_plan import (
     Criterion,
     HitPlan,
@@ -23,7 +22,6 @@ from jointbench.analysis.design.plan_search import (
     choose_plan,
     next_steps,
     random_plan,
-    require_choice,
 )
 from jointbench.analysis.structures.design.pair_information import (
     AddedMass,
@@ -34,7 +32,6 @@ from jointbench.analysis.structures.design.pair_information import (
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.body_moduli import (
     is_modulus,
-    modulus_name,
     with_moduli,
 )
 from jointbench.analysis.structures.reduction.mounted_sensors import (
@@ -44,6 +41,17 @@ from jointbench.analysis.structures.reduction.mounted_sensors import (
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_structure
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+from jointbench.station.design.design_checks import require_points, require_wanted
+from jointbench.station.design.design_records import (
+    DesignedTest,
+    DesignRequest,
+)
+from jointbench.station.design.torque_next import (
+    StruckPlan,
+    known_states,
+    next_torques,
+    with_moduli_of_one,
+)
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.identify_checks import known_priors
 from jointbench.station.joints.state_values import read_identified, state_values
@@ -56,57 +64,6 @@ from jointbench.station.joints.structure_tables import DesignTable
 
 RANDOM_PLANS = 200
 _MODES = 30
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class DesignedTest:
-    """A test plan with what it is expected to give.
-
-    Attributes:
-        names: of the common parameters.
-        wanted: numbers of the wanted ones.
-        points: names of the points, sensors and hits alike.
-        plan: chosen, or as measured.
-        deviation: expected sd of the common parameters in ln, shape (p,).
-        even: the same of an evenly spread plan.
-        ratio_even: width of that plan over that of the chosen one [-].
-        ratio_random: width of the best of 200 random plans, likewise [-].
-        needed: hits at each point for the wanted deviation; None where there is none.
-        steps: what one more step buys, the best first.
-    """
-
-    names: tuple[str, ...]
-    wanted: tuple[int, ...]
-    points: tuple[str, ...]
-    plan: HitPlan
-    deviation: FloatArray
-    even: FloatArray
-    ratio_even: float
-    ratio_random: float
-    needed: int | None
-    steps: tuple[NextStep, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class DesignRequest:
-    """What is asked for.
-
-    Attributes:
-        identified: JSON of ``identify``; None takes the expected values of the model.
-        state: label in it.
-        measured: whether [sensors] and [hits] of the model are the plan, and the next
-            step is asked for.
-        deviation: wanted sd [-], or None.
-        mass: added at each point in turn as a next step [kg], or None.
-        plan_sensors: response sensors of the plan to be written, or None.
-    """
-
-    identified: Path | None = None
-    state: str | None = None
-    measured: bool = False
-    deviation: float | None = None
-    mass: float | None = None
-    plan_sensors: int | None = None
 
 
 def designed_test(model: Path, request: DesignRequest) -> DesignedTest:
@@ -130,38 +87,46 @@ def designed_test(model: Path, request: DesignRequest) -> DesignedTest:
     places = {**settings.reachable}
     if request.measured:
         places |= {**settings.sensors, **settings.hits}
-    _require_points(settings, table, request)
+    require_points(settings, table, request)
     test = _test(table, settings.identify.lines)
     test.frequency()
     structure = structure_of(settings, model.parent)
-    _require_wanted(settings, table, structure)
-    values = _values(settings, table, structure, request)
+    require_wanted(settings, table, structure)
+    joints = _values(settings, table, structure, request)
     mounted = list(sensors_of(places).values())
     loads = sensor_rows(structure, mounted)
     modes, box = settings.identify.modes or _MODES, settings.identify.stiffness_box
     reduced = reduce_structure(structure, modes=modes, box=box, loads=loads)
-    moduli = list(settings.identify.modulus_sd)
-    reduced = with_moduli(reduced, moduli)
-    values = JointValues(
-        np.append(values.stiffness, np.ones(len(moduli))),
-        np.append(values.damping, np.zeros(len(moduli))),
-    )
+    reduced = with_moduli(reduced, list(settings.identify.modulus_sd))
+    values = with_moduli_of_one(joints, reduced)
     rows = readout(structure, reduced, mounted)
     pairs = pair_information(reduced, values, test, rows, rows)
     search = _search(settings, table, reduced, pairs)
     names = tuple(places)
-    if request.measured:
-        plan = _measured(settings, names, table)
-        steps = list(next_steps(search, plan))
-        if request.mass is not None:
-            for at in range(len(settings.reachable)):
-                added = AddedMass(request.mass, rows[at])
-                more = pair_information(reduced, values, test, rows, rows, added)
-                steps.append(_mass_step(search, plan, more, at))
-        steps.sort(key=lambda one: one.width)
-    else:
-        plan, steps = choose_plan(search, table.sensors, table.hits), []
-    return _result(search, reduced, names, plan, tuple(steps), request)
+    if not request.measured:
+        plan = choose_plan(search, table.sensors, table.hits)
+        return _result(search, reduced, names, plan, request)
+    plan = _measured(settings, names, table)
+    found = _result(search, reduced, names, plan, request)
+    steps = list(next_steps(search, plan))
+    if request.mass is not None:
+        for at in range(len(settings.reachable)):
+            added = AddedMass(request.mass, rows[at])
+            more = pair_information(reduced, values, test, rows, rows, added)
+            steps.append(_mass_step(search, plan, more, at))
+    states = known_states(settings, structure, request, joints)
+    torques = next_torques(
+        StruckPlan(reduced, test, rows[list(plan.sensors)], rows[list(plan.hits)]),
+        search,
+        plan,
+        states,
+        (*table.torques, *request.plan_torques),
+        table.torque_scatter,
+    )
+    steps += [NextStep("torque", at, one.step.width) for at, one in enumerate(torques)]
+    steps.sort(key=lambda one: one.width)
+    known = len({one.torque for one in states})
+    return replace(found, steps=tuple(steps), torques=torques, known_torques=known)
 
 
 def _mass_step(
@@ -183,7 +148,6 @@ def _result(
     reduced: ReducedModel,
     names: tuple[str, ...],
     plan: HitPlan,
-    steps: tuple[NextStep, ...],
     request: DesignRequest,
 ) -> DesignedTest:
     count = search.pairs.own.shape
@@ -214,7 +178,6 @@ def _result(
         search.width(even) / width,
         min(randoms) / width,
         needed,
-        steps,
     )
 
 
@@ -280,39 +243,6 @@ def _search(
         Criterion(table.criterion),
         float(table.repeats),
     )
-
-
-def _require_points(
-    settings: StructureModel, table: DesignTable, request: DesignRequest
-) -> None:
-    """Check sensors and hit points before the meshes are reduced, which takes long."""
-    if request.measured:
-        if not settings.sensors or not settings.hits:
-            raise BadData("--next needs [sensors.*] and [hits.*] as they were measured")
-        chosen = len(settings.sensors)
-    else:
-        require_choice(table.sensors, table.hits, (len(settings.reachable),) * 2)
-        chosen = table.sensors
-    if request.plan_sensors not in {None, chosen}:
-        raise BadData(
-            f"the plan has {request.plan_sensors} response sensors with a point, the "
-            f"design {chosen}; give the plan as many, or change design.sensors"
-        )
-
-
-def _require_wanted(
-    settings: StructureModel, table: DesignTable, structure: Structure
-) -> None:
-    """Check the names of wanted parameters before the meshes are reduced."""
-    there = [
-        f"{name}_{kind}"
-        for kind in ("stiffness", "damping")
-        for name in structure.parameter_names
-    ]
-    there += [modulus_name(body) for body in settings.identify.modulus_sd]
-    unknown = [one for one in table.wanted if one not in there]
-    if unknown:
-        raise UsageError(f"design.wanted: no {unknown[0]!r}; there are {there}")
 
 
 def _measured(

@@ -117,7 +117,7 @@ def state_values(
         UsageError: there are several states, or none of that name.
     """
     found = file.parameters
-    label = _label(found, label)
+    label = _label(file, label)
     stiffness, damping = [], []
     parameters: list[JointParameter] = []
     for name in structure.parameter_names:
@@ -172,8 +172,18 @@ def _covariance(content: Mapping[str, Any], count: int) -> FloatArray | None:
     return found
 
 
-def _label(found: Mapping[str, JointParameter], label: str | None) -> str:
-    labels = list(dict.fromkeys(n.rpartition(":")[0] for n in found if ":" in n))
+def state_labels(file: IdentifiedFile) -> list[str]:
+    """Return the labels of the states in a file; none where its parameters name none.
+
+    Args:
+        file: parameters by name.
+    """
+    names = file.parameters
+    return list(dict.fromkeys(n.rpartition(":")[0] for n in names if ":" in n))
+
+
+def _label(file: IdentifiedFile, label: str | None) -> str:
+    labels = state_labels(file)
     if label is None and len(labels) > 1:
         raise UsageError(f"the file holds the states {labels}; choose one with --state")
     if label is not None and label not in labels:

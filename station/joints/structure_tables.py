@@ -12,6 +12,7 @@ from jointbench.analysis.structures.matrices.parts import (
 from jointbench.analysis.structures.meshes.elements import ElementKind
 from jointbench.station.files.toml_file import StrictTable, with_unit
 from jointbench.station.joints.shape_table import PatchTable, ShapeTable
+from jointbench.station.schemas.positive_quantities import Torque
 
 _Length = Annotated[float, with_unit("length")]
 _Point = tuple[_Length, _Length, _Length]
@@ -149,7 +150,10 @@ class DesignTable(StrictTable):
     """What a test plan is designed for, before the first hit.
 
     Stiffness and damping by direction are expected ones, where no identified values are
-    given; gain and force deviations are relative.
+    given; gain and force deviations are relative. `torque` is that of these values or
+    of the chosen state, `torques` those that could follow, `torque_scatter` what a
+    state departs from the law over the torque; `states` holds torques by the labels of
+    identified states that name no preload.
     """
 
     sensors: Annotated[int, Field(ge=1, le=100)] = 3
@@ -163,6 +167,10 @@ class DesignTable(StrictTable):
     duration: Annotated[float, with_unit("time"), Field(gt=0)] = 1.0
     gain_sd: _Trust = 0.02
     force_sd: _Trust = 0.02
+    torque: Torque | None = None
+    torques: tuple[Torque, ...] = ()
+    torque_scatter: _Trust = 0.02
+    states: dict[str, Torque] = Field(default_factory=dict)
     wanted: tuple[str, ...] = ()
     criterion: Literal["D", "E"] = "D"
     stiffness: dict[str, Annotated[float, with_unit("stiffness"), Field(gt=0)]] = Field(

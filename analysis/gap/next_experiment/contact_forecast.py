@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.design.expected_gain import Forecast, expected_gain
+from jointbench.analysis.design.information import forecast_covariance, information_of
 from jointbench.analysis.gap.contact_bench.contact_bench import (
     ContactBench,
     make_contact_bench,
@@ -17,10 +19,6 @@ from jointbench.analysis.gap.next_experiment.contact_series import (
     TorqueSeries,
     torque_series,
     with_series,
-)
-from jointbench.analysis.gap.next_experiment.information_gain import (
-    Forecast,
-    expected_gain,
 )
 from jointbench.analysis.gap.next_experiment.next_settings import NEXT
 from jointbench.analysis.gap.next_experiment.ranked_experiment import (
@@ -52,7 +50,7 @@ def rank_series(
         forecasts = forecasts_of(bench, kept, series, accepted=accepted)
         if len(forecasts) < 2:
             continue
-        gain = expected_gain(forecasts, bench.policy.rival_score)
+        gain = expected_gain(forecasts, bench.policy.rival_score, draws=NEXT.draws)
         found.append(
             RankedExperiment(series.name, series.words, series.minutes, gain, index)
         )
@@ -107,11 +105,11 @@ def _forecast(
     x = np.concatenate([base, fit.x[fit.n_base :]])
     old = make_problem(wider.chosen(~fresh), fit.candidates)
     slopes = jacobian_of(old, x, old.residual(x, FULL), FULL)
-    hessian = slopes.T @ slopes + np.diag(old.prior)
+    known = information_of(slopes) + np.diag(old.prior)
     ahead = wider.plain(fresh)
     new = make_problem(ahead, fit.candidates)
     slopes = jacobian_of(new, x, new.residual(x, FULL), FULL)
-    spread = slopes @ np.linalg.pinv(hessian, hermitian=True) @ slopes.T
+    spread = forecast_covariance(slopes, known)
     spread += CONTACT.model_sd**2 * np.eye(len(spread))
     mean = ahead.predict(x[: base.size], split(x, base.size, fit.candidates))
     rows = wider.data.rows

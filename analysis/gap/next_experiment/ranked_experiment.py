@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from jointbench.analysis.gap.next_experiment.information_gain import ExpectedGain
+from jointbench.analysis.design.expected_gain import ExpectedGain
 from jointbench.analysis.gap.next_experiment.next_settings import NEXT
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.analysis.design.fisher_plan import PairInformation
+from jointbench.analysis.design.fisher_plan import PairInformation, pairs_of
 from jointbench.analysis.structures.reduction.body_moduli import is_modulus
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.predict_response import predict_frf
@@ -117,12 +117,7 @@ def pair_information(
     laplace = np.asarray(2j * np.pi * frequency, complex)
     response, slopes = _slopes(model, values, laplace, (sensors, hits), added)
     weight = laplace**2 * np.sqrt(2.0 / test.variance(frequency))
-    slopes, own = slopes * weight, response * weight
-    return PairInformation(
-        _real(np.einsum("psil,qsil->sipq", slopes.conj(), slopes, optimize=True)),
-        _real(np.einsum("psil,sil->sip", slopes.conj(), own, optimize=True)),
-        _real(np.einsum("sil,sil->si", own.conj(), own)),
-    )
+    return pairs_of(np.moveaxis(slopes * weight, 0, -1), response * weight)
 
 
 def _slopes(
@@ -170,7 +165,3 @@ def information_names(model: ReducedModel) -> tuple[str, ...]:
     ]
     damping = [f"{name}_damping" for name in model.names if not is_modulus(name)]
     return (*stiffness, *damping)
-
-
-def _real(values: ComplexArray) -> FloatArray:
-    return np.ascontiguousarray(np.asarray(values).real)

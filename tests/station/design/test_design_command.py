@@ -16,63 +16,6 @@ from jointbench.station.screen.exit_codes import (
 )
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-BLOCK = """
-[materials.marble]
-youngs_modulus = "55 GPa"
-poisson_ratio = 0.25
-density = "2600 kg/m^3"
-loss_factor = 0.01
-
-[bodies.block]
-box = ["200 mm", "100 mm", "50 mm"]
-cells = [2, 1, 1]
-material = "marble"
-
-[joints.bed]
-between = ["block", "ground"]
-face = "z-"
-
-[identify]
-modes = 10
-stiffness_box = ["1 MN/m", "1 GN/m"]
-modulus_sd = { block = "3 %" }
-
-[design]
-sensors = 3
-hits = 2
-band = ["100 Hz", "3000 Hz"]
-duration = "100 ms"
-
-[design.stiffness]
-"bed.normal" = "300 MN/m"
-"bed.tangential_1" = "100 MN/m"
-"bed.tangential_2" = "80 MN/m"
-
-[design.damping]
-"bed.normal" = "2 kN s/m"
-"bed.tangential_1" = "1 kN s/m"
-"bed.tangential_2" = "1 kN s/m"
-"""
-POINTS = [
-    ("a", (0, 0, 50), (0, 0, 1)),
-    ("b", (200, 100, 50), (0, 0, 1)),
-    ("c", (200, 50, 50), (1, 0, 0)),
-    ("d", (100, 100, 50), (0, 1, 0)),
-    ("e", (100, 50, 50), (0, 0, 1)),
-]
-
-
-@pytest.fixture
-def model(tmp_path: Path) -> Path:
-    """A block on a bed, with five points within reach."""
-    text = BLOCK + "".join(
-        f'\n[reachable.{name}]\nbody = "block"\ndirection = {list(way)}\n'
-        f"position = {[f'{x} mm' for x in at]}\n"
-        for name, at, way in POINTS
-    )
-    path = tmp_path / "block.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *words: object) -> int:
@@ -98,23 +41,17 @@ def test_the_plan_that_is_written_is_taken_by_measure(
 
 
 def test_the_next_step_of_a_measured_plan(
-    monkeypatch: pytest.MonkeyPatch, model: Path, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, measured_block: Path, tmp_path: Path
 ) -> None:
-    """Hit points, sensors, one more hit and a mass, each with what it buys."""
-    text = model.read_text(encoding="utf-8")
-    for kind, name, point in (("sensors", "a1", 0), ("hits", "1", 1)):
-        _, at, way = POINTS[point]
-        text += (
-            f'\n[{kind}.{name}]\nbody = "block"\ndirection = {list(way)}\n'
-            f"position = {[f'{x} mm' for x in at]}\n"
-        )
-    model.write_text(text, encoding="utf-8")
+    """Hit points, sensors, one more hit, a mass, and the torques of the plan."""
     target = tmp_path / "next.json"
-    words = ("--next", "--mass", "500 g", "--json", target)
-    assert run(monkeypatch, model, *words) == 0
-    steps = json.loads(target.read_text(encoding="utf-8"))["next"]
-    assert {one["kind"] for one in steps} == {"hit point", "sensor", "repeat", "mass"}
-    assert steps[0]["width_ratio"] < 0.9
+    words = ("--next", "--mass", "500 g", "--plan", EXAMPLES / "plates.toml")
+    assert run(monkeypatch, measured_block, *words, "--json", target) == 0
+    found = json.loads(target.read_text(encoding="utf-8"))
+    kinds = {one["kind"] for one in found["next"]}
+    assert kinds == {"hit point", "sensor", "repeat", "mass", "torque"}
+    assert found["next"][0]["width_ratio"] < 0.9
+    assert [one["torque"] for one in found["torques"]] == [31.6, 50.0, 63.2, 80.0]
 
 
 def test_what_a_design_lacks_is_said(

@@ -8,6 +8,7 @@ import pytest
 from joint_campaigns import LAW, joint
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.analysis.design.expected_gain import Forecast, expected_gain
 from jointbench.analysis.gap.contact_bench.joint_states import JointData
 from jointbench.analysis.gap.diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.diagnosis.contact_search import fit_effect
@@ -16,10 +17,6 @@ from jointbench.analysis.gap.next_experiment.contact_series import (
     joined_data,
     torque_series,
     with_series,
-)
-from jointbench.analysis.gap.next_experiment.information_gain import (
-    Forecast,
-    expected_gain,
 )
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.station.gap.next_plan import plan_text, write_plan
@@ -33,11 +30,11 @@ def test_distant_forecasts_decide_and_equal_ones_do_not() -> None:
     """Twenty sd apart one explanation is left; at the same place nothing is gained."""
     near = Forecast(0.0, np.zeros(1), np.eye(1))
     far = Forecast(0.0, np.full(1, 20.0), np.eye(1))
-    clear = expected_gain([near, far], 15.0)
+    clear = expected_gain([near, far], 15.0, draws=300)
     assert clear.decided > 0.99
     assert clear.wrong == 0.0
     assert clear.gain == pytest.approx(0.5, abs=0.01)
-    none = expected_gain([near, near], 15.0)
+    none = expected_gain([near, near], 15.0, draws=300)
     assert none.decided == 0.0
     assert none.gain == pytest.approx(0.0, abs=1e-12)
 
@@ -46,7 +43,7 @@ def test_the_share_of_decisions_is_that_of_the_normal_distribution() -> None:
     """With forecasts d sd apart the difference of costs is d^2 + 2 d z."""
     first = Forecast(0.0, np.zeros(1), np.eye(1))
     other = Forecast(0.0, np.full(1, 4.0), np.eye(1))
-    found = expected_gain([first, other], 15.0)
+    found = expected_gain([first, other], 15.0, draws=300)
     # 16 + 8 z >= 15, or as clearly the wrong way.
     assert found.decided == pytest.approx(0.55, abs=0.08)
 

@@ -8,9 +8,9 @@ import numpy as np
 import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.gap.next_experiment.next_settings import NEXT
 
 _LEAST = 1e-12
+_LEAST_DRAWS = 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +55,7 @@ class ExpectedGain:
 
 
 def expected_gain(
-    forecasts: Sequence[Forecast], rival_score: float, *, seed: int = 0
+    forecasts: Sequence[Forecast], rival_score: float, *, draws: int, seed: int = 0
 ) -> ExpectedGain:
     """Simulate an experiment under every explanation and judge the outcomes.
 
@@ -66,6 +66,7 @@ def expected_gain(
     Args:
         forecasts: of the explanations that survive.
         rival_score: score difference from which an explanation is excluded.
+        draws: simulated outcomes, shared by the explanations.
         seed: of the draws.
 
     Source:
@@ -77,7 +78,7 @@ def expected_gain(
     prior = _weights(scores)
     roots = [scipy.linalg.cholesky(_safe(f.covariance), lower=True) for f in forecasts]
     totals = np.zeros(4)
-    each = max(NEXT.draws // len(forecasts), 20)
+    each = max(draws // len(forecasts), _LEAST_DRAWS)
     for true, forecast in enumerate(forecasts):
         white = rng.standard_normal((forecast.mean.size, each))
         outcome = forecast.mean[:, None] + roots[true] @ white
