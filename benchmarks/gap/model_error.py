@@ -2,11 +2,13 @@
 """Judge the verdict under model error on benches that no model describes exactly.
 
 Usage: python benchmarks/gap/model_error.py RUNS.jsonl [--count 120] [--seed 4000]
+           [--kind "taken out"]
 
 The benches are those of tests/judges/imperfect_benches.py. Each seed is judged with the
 whole catalogue; every second one again with the family of its main law taken out; every
 second one without a law, so that only model error is there. One JSON line for each
-judgement; those that are in the file are skipped. With --whole the whole engine runs
+judgement; those that are in the file are skipped. With --kind only that one of
+"mixture", "taken out" and "no law" is judged. With --whole the whole engine runs
 before, as in `jointbench gap`; without it only the part under model error.
 
 With --outside the joint law is one that no catalogue has, and every second bench is
@@ -56,10 +58,13 @@ def drawn(seed: int) -> tuple[tuple[str, str], float]:
     return (main, str(rng.choice(others))), visible
 
 
-def waiting(seeds: range, done: set[str]) -> Iterator[tuple[str, int]]:
+def waiting(
+    seeds: range, kinds: tuple[str, ...], done: set[str]
+) -> Iterator[tuple[str, int]]:
     """Return the judgements that are not in the file yet."""
     for seed in seeds:
-        for k, kind in enumerate(KINDS):
+        for kind in kinds:
+            k = KINDS.index(kind)
             due = k == 0 or seed % 2 == k - 1
             if due and f"{kind}-{seed}" not in done:
                 yield kind, seed
@@ -118,12 +123,12 @@ def judged(kind: str, seed: int, bench: ImperfectBench, whole: bool) -> dict[str
     }
 
 
-def run(path: Path, seeds: range, whole: bool) -> None:
+def run(path: Path, seeds: range, kinds: tuple[str, ...], whole: bool) -> None:
     """Judge what is not in the file yet."""
     lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
     done = {f"{r['kind']}-{r['seed']}" for r in map(json.loads, lines)}
     last: tuple[int, ImperfectBench] | None = None
-    for kind, seed in waiting(seeds, done):
+    for kind, seed in waiting(seeds, kinds, done):
         names, visible = drawn(seed)
         if kind == "no law":
             bench = make_bench_with_errors(seed + 100000)
@@ -156,6 +161,7 @@ def main() -> None:
     parser.add_argument("runs", type=Path)
     parser.add_argument("--count", type=int, default=120)
     parser.add_argument("--seed", type=int, default=4000)
+    parser.add_argument("--kind", choices=KINDS)
     parser.add_argument("--whole", action="store_true")
     parser.add_argument("--outside", action="store_true")
     arguments = parser.parse_args()
@@ -163,7 +169,8 @@ def main() -> None:
     if arguments.outside:
         run_outside(arguments.runs, seeds, arguments.whole)
         return
-    run(arguments.runs, seeds, arguments.whole)
+    kinds = (arguments.kind,) if arguments.kind else KINDS
+    run(arguments.runs, seeds, kinds, arguments.whole)
 
 
 if __name__ == "__main__":

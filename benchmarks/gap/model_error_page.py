@@ -6,6 +6,7 @@ Usage: python benchmarks/gap/model_error_page.py RUNS.jsonl > docs/gap-model-err
 
 import argparse
 import json
+import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -13,6 +14,9 @@ from typing import Any
 
 import numpy as np
 from outcomes import wilson
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
+from imperfect_benches import FAMILY
 
 from jointbench.analysis.gap.model.policy import STANDARD
 
@@ -105,6 +109,18 @@ def _counts(runs: Sequence[Run]) -> list[str]:
     return lines
 
 
+def _of_the_second(runs: Sequence[Run]) -> str:
+    """Return how many families named falsely are that of the second law."""
+    own = [r for r in runs if r["kind"] == "taken out"]
+    wrong = [r for r in own if word_of(r) == "wrong"]
+    there = sum(named_with(r) == FAMILY[r["truth"][1]] for r in wrong)
+    return (
+        f"Of the {len(wrong)} wrong names of the second set {there} are the family of "
+        "the second law, which is in the records. A family that is in no law of the "
+        f"records was named in {share(len(wrong) - there, len(own))}."
+    )
+
+
 def _by(runs: Sequence[Run], name: str, key: Callable[[Run], str]) -> list[str]:
     """Return right and wrong of the mixtures by some key."""
     lines = ["", f"| {name} | n | right | wrong | open or unknown |"]
@@ -175,6 +191,8 @@ def page(every: Sequence[Run]) -> str:
         "called nonlinear without a family.",
         "",
         *_counts(runs),
+        "",
+        _of_the_second(runs),
         "",
         f"CPU time of this part of the verdict: median {np.median(seconds):.1f} s, "
         f"largest {np.max(seconds):.1f} s (of a machine that was also busy with other "

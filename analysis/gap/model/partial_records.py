@@ -13,8 +13,8 @@ class FamilyLead:
     """Lead of the best law over the base, or over the best law of another family.
 
     Attributes:
-        rival: name of the law, or ``"base"``.
-        family: of the rival; empty for the base.
+        rival: name of the law, ``"base"``, or a free spring and damper.
+        family: of the rival; empty for the base and for a free spring and damper.
         site: word of the rival's site; empty for the base.
         share: of the rival's residual power that the best law removes, held out [-].
         standard_errors: mean gain of log power over its standard error [-].
@@ -85,7 +85,8 @@ class PartialExplanation:
         beside: the elementary shape that explains most beside the law; None for a law
             that dissipates energy.
         lead: over the base.
-        rivals: leads over the best law of each other family or site, closest first.
+        rivals: leads over the best law of each other family or site, and, of a friction
+            law that would be named, over a free spring and damper; closest first.
         levels: softest and hardest level at which the law leads; empty if there is
             none.
         left: power left over that of the base by view and slice [-].

@@ -25,6 +25,11 @@ from jointbench.analysis.gap.model_error.condition_scores import (
     lead_of,
     score_conditions,
 )
+from jointbench.analysis.gap.model_error.free_law import (
+    FREE_LAW,
+    FRICTION,
+    fit_free_law,
+)
 from jointbench.analysis.gap.model_error.law_fits import LawFits, fit_laws
 from jointbench.analysis.gap.model_error.model_error_settings import (
     MODEL_ERROR_SETTINGS,
@@ -76,6 +81,9 @@ def _judged(scores: "_Scores", policy: Policy) -> PartialExplanation:
         reason = "no force law predicts conditions held out better than none"
         return replace(found, reason=reason)
     doubt = _doubt(found, policy)
+    if found.family == FRICTION and not doubt:
+        found = _beside_free_law(scores, found)
+        doubt = _doubt(found, policy)
     text = f"on conditions held out it removes {100 * lead.share:.0f} % of the power"
     clear = "and leads every other family by more than chance"
     return replace(
@@ -88,7 +96,7 @@ def _judged(scores: "_Scores", policy: Policy) -> PartialExplanation:
 
 def _doubt(found: PartialExplanation, policy: Policy) -> str:
     """Return the reason against naming the family of a law, or empty."""
-    close = [r.family for r in found.rivals if not _clear(r, policy)]
+    close = [r.family or r.rival for r in found.rivals if not _clear(r, policy)]
     if close:
         families = " and ".join(dict.fromkeys(close))
         return f"but its lead over {families} is not clear"
@@ -160,16 +168,27 @@ def _lead(scores: _Scores, rival: ConditionScores) -> FamilyLead:
     lead: Lead = lead_of(
         scores.fits.bench, scores.best, rival, MODEL_ERROR_SETTINGS.visible_gain
     )
-    law = rival.fit.candidates[0] if rival.fit.candidates else None
+    laws = rival.fit.candidates
+    alone = len(laws) == 1
     return FamilyLead(
-        rival=law.effect.name if law else "base",
-        family=law.effect.family if law else "",
-        site=str(law.site) if law else "",
+        rival=laws[0].effect.name if alone else FREE_LAW if laws else "base",
+        family=laws[0].effect.family if alone else "",
+        site=str(laws[0].site) if laws else "",
         share=1.0 - float(np.exp(-lead.mean)),
         standard_errors=lead.standard_errors,
         conditions=lead.share,
         shown=lead.shown,
     )
+
+
+def _beside_free_law(scores: _Scores, found: PartialExplanation) -> PartialExplanation:
+    """Return a friction law with its lead over a free spring and damper."""
+    bench, law = scores.fits.bench, scores.best.fit.candidates[0]
+    free = fit_free_law(bench, scores.fits.base, law.site)
+    if free is None:
+        return found
+    rivals = (*found.rivals, _lead(scores, score_conditions(bench, free)))
+    return replace(found, rivals=tuple(sorted(rivals, key=lambda r: r.standard_errors)))
 
 
 def _explanation(

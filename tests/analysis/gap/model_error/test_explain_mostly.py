@@ -19,6 +19,7 @@ from jointbench.analysis.gap.model_error.discrepancy import (
     whitening,
 )
 from jointbench.analysis.gap.model_error.explain_mostly import explain_mostly
+from jointbench.analysis.gap.model_error.free_law import FREE_LAW
 from jointbench.analysis.gap.model_error.spectral_frame import spectral_frame
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
@@ -29,6 +30,8 @@ LINEAR = [
 ]
 """Linear effects that the model lacks: they are the model error."""
 CUBIC = ("cubic_stiffness", "link:joint", [1.5e16])
+SOFTENING = ("cubic_stiffness", "link:joint", [-4e15])
+SLIDER = ("jenkins", "link:joint", [1e7, 5e-6, 20.0])
 SPRINGS = frozenset({"cubic_stiffness", "quadratic_stiffness"})
 
 
@@ -36,7 +39,7 @@ SPRINGS = frozenset({"cubic_stiffness", "quadratic_stiffness"})
 @one_thread()
 def explained(*laws: str, without: frozenset[str] = frozenset()) -> PartialExplanation:
     """Return what a law explains in a campaign with model error."""
-    known = {"cubic_stiffness": CUBIC}
+    known = {"cubic_stiffness": CUBIC, "softening": SOFTENING, "slider": SLIDER}
     campaign = made.made_campaign([*LINEAR, *(known[name] for name in laws)])
     bench, base = fit_base(make_bench(campaign, without=without))
     assert isinstance(bench, LumpedBench)
@@ -80,6 +83,26 @@ def test_linear_effects_alone_are_a_discrepancy_and_no_law() -> None:
 def test_a_family_that_is_not_in_the_catalogue_is_not_replaced() -> None:
     """Without springs no other family is named."""
     assert not explained("cubic_stiffness", without=SPRINGS).named
+
+
+def test_a_softening_spring_is_not_called_friction() -> None:
+    """Without elastic laws friction leads all others, but not a free spring."""
+    found = explained("softening", without=SPRINGS | {"gap"})
+    assert found.family == "friction"
+    assert found.nonlinear
+    assert not found.named
+    assert found.rivals[0].rival == FREE_LAW
+    assert found.rivals[0].standard_errors < 0.0
+    assert FREE_LAW in found.reason
+
+
+def test_a_slider_leads_a_free_spring_and_damper() -> None:
+    """Its stiffness and loss are no powers of the motion."""
+    found = explained("slider", without=SPRINGS)
+    assert (found.named, found.family) == (True, "friction")
+    (free,) = (r for r in found.rivals if r.rival == FREE_LAW)
+    assert (free.family, free.site) == ("", "link:joint")
+    assert free.standard_errors > 3.0
 
 
 def test_the_discrepancy_of_made_residuals_is_found() -> None:
