@@ -218,10 +218,14 @@ def next_torques(
         return ()
     names = information_names(struck.model)
     damping = np.array([name.endswith("_damping") for name in names])
-    bound = np.array([not is_modulus(name) for name in names])
-    if not bound[search.wanted].any():
-        return ()
     first = states[0]
+    own = struck.information(first.joints).common.sum(axis=(0, 1))
+    # A damping that was not identified is 0: nothing informs on its logarithm.
+    informed = np.diag(own) > 0
+    bound = np.array([not is_modulus(name) for name in names]) & informed
+    wanted = search.wanted[informed[search.wanted]]
+    if not bound[wanted].any():
+        return ()
     ratios = np.array([float(np.log(one.torque / first.torque)) for one in states])
     exponent = _exponents(states, ratios, scatter)
     deviation = np.zeros(len(names))
@@ -233,8 +237,8 @@ def next_torques(
         ),
         search.prior,
         TorqueLaw(deviation, scatter),
-        search.wanted,
-        np.array([at for at in search.wanted if bound[at] and not damping[at]], int),
+        wanted,
+        np.array([at for at in wanted if bound[at] and not damping[at]], int),
         search.criterion,
         plan.repeats,
     )
