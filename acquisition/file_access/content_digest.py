@@ -19,6 +19,7 @@ import numpy as np
 from h5py import h5a
 
 from jointbench.acquisition.basics.errors import CorruptedFile
+from jointbench.acquisition.basics.steady_memory import return_freed_memory
 from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.hdf5_layout import dimension_names
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
@@ -29,7 +30,7 @@ DIGEST = "content_sha256"
 """Attribute of the root that holds the digest."""
 _NOT_CONTENT = {DIGEST, "DIMENSION_LIST", "REFERENCE_LIST"}
 """Left out: the digest itself, and scales, which are included by name."""
-_PIECE = 2**24
+_PIECE = 2**22
 """Values are read in pieces of about this size [bytes]."""
 _DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError)
 
@@ -59,6 +60,7 @@ def new_signed_file(
     Raises:
         UsageError: it cannot be written there.
     """
+    return_freed_memory()  # the file is made in memory, and copied once
     with new_file(path, schema=schema, title=title, overwrite=True) as file:
         yield file
         write_attributes(file, {DIGEST: content_digest(file)})

@@ -40,6 +40,8 @@ class LogTail:
             OSError: the file cannot be read.
         """
         self._dataset.refresh()
+        if self._dataset.shape[0] <= self._read:
+            return ()
         text = self._dataset[self._read :].tobytes()
         while text:
             whole, end, _ = text.rpartition(b"\n")

@@ -43,8 +43,8 @@ a few times as much fits into any memory."""
 _MOST_KEPT = 2**25
 """Size of the unpacked samples that are kept [bytes]: one hit of 64 channels and 2 s at
 51.2 kS/s in single precision."""
-_SAMPLES = 2**20
-"""Samples of each channel that are kept at most: 20 s at 51.2 kS/s. Few channels need
+_SAMPLES = 2**19
+"""Samples of each channel that are kept at most: 10 s at 51.2 kS/s. Few channels need
 less than `_MOST_KEPT`."""
 _LARGE_BLOCK = 2**22
 """Blocks below this size are used again [bytes]: those of a hit, hundreds of times a

@@ -34,6 +34,14 @@ HITS = 60  # of a condition
 EVERY, LENGTH, BEFORE = 102_400, 25_600, 512  # samples of a hit and around it
 MODES = ((310.0, 0.012), (742.0, 0.008))
 POINTS = ("1", "2", "3", "4", "5")
+COMMANDS = {
+    "recover": "recover {live} --out {done}",
+    "verify": "verify {done}",
+    "modal": "modal {done} --json {modal}",
+    "process": "process {done}",
+    "export-netcdf": "export {done} --to netcdf",
+    "export-uff": "export {done} --to uff",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,6 +246,16 @@ def page(steps: list[Step]) -> str:
     )
 
 
+def note(step: Step) -> None:
+    """Put a step in the place of an earlier run of it, and write the page."""
+    known = [Step(**s) for s in json.loads(RUNS.read_text())] if RUNS.exists() else []
+    others = [s for s in known if (s.hours, s.name) != (step.hours, step.name)]
+    names = list(COMMANDS)
+    steps = sorted([*others, step], key=lambda s: (-s.hours, names.index(s.name)))
+    RUNS.write_text(json.dumps([asdict(s) for s in steps], indent=1) + "\n")
+    PAGE.write_text(page(steps), encoding="utf-8")
+
+
 def main() -> None:
     """Run the steps, and write the page."""
     parser = argparse.ArgumentParser()
@@ -250,26 +268,17 @@ def main() -> None:
     live = options.folder / "live.h5"
     done = options.folder / "session.h5"
     wanted = options.steps.split(",")
-    steps = [Step(**s) for s in json.loads(RUNS.read_text())] if RUNS.exists() else []
-    steps = [s for s in steps if s.hours != options.hours or s.name not in wanted]
-    commands = {
-        "recover": ["recover", str(live), "--out", str(done)],
-        "verify": ["verify", str(done)],
-        "modal": ["modal", str(done), "--json", str(options.folder / "modal.json")],
-        "process": ["process", str(done)],
-        "export-netcdf": ["export", str(done), "--to", "netcdf"],
-        "export-uff": ["export", str(done), "--to", "uff"],
-    }
+    places = {"live": live, "done": done, "modal": options.folder / "modal.json"}
     try:
         if not done.exists():
             write_killed(live, options.hours)
         for name in wanted:
-            steps.append(run_step(name, options.hours, commands[name]))
-            print(row(steps[-1]), flush=True)
+            arguments = [part.format_map(places) for part in COMMANDS[name].split()]
+            step = run_step(name, options.hours, arguments)
+            print(row(step), flush=True)
             if name == "recover":
                 live.unlink()
-            RUNS.write_text(json.dumps([asdict(s) for s in steps], indent=1) + "\n")
-            PAGE.write_text(page(steps), encoding="utf-8")
+            note(step)
     finally:
         if not options.keep:
             shutil.rmtree(options.folder)

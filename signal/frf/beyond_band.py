@@ -13,6 +13,7 @@ from scipy.ndimage import median_filter, uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.line_peaks import prominent_peaks
 
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
@@ -149,12 +150,9 @@ def _standing_out(level: FloatArray) -> Sequence[int]:
     """
     smooth = median_filter(level, _SMOOTH, mode="nearest")
     floor = max(float(smooth.max()), 1.0) * np.finfo(float).eps
-    # Slow to import, and short commands import this module without looking for peaks.
-    from scipy.signal import find_peaks
-
-    found, _ = find_peaks(
+    found = prominent_peaks(
         np.log(np.maximum(smooth, floor)),
-        prominence=np.log(_STANDS_OUT),
+        prominence=float(np.log(_STANDS_OUT)),
         distance=max(1, level.size // _APART),
     )
     return [

@@ -64,8 +64,8 @@ def find_hits(recording: Recording, criteria: HitCriteria | None = None) -> Reco
     """
     criteria = criteria or HitCriteria()
     row = recording.row(Quantity.FORCE)
-    force = np.array(recording.samples[row])
-    force -= np.median(force)
+    force = recording.samples[row]
+    force = force - np.median(force)
     level = _trigger_level(force, criteria, recording.name)
     dead = round(criteria.dead_time * recording.sample_rate)
     triggers = trigger_indices(

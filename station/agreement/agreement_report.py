@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The report on a measured structure beside its model: MAC, differences, FRFs."""
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from jointbench.station.screen.page_parts import (
 )
 from jointbench.station.screen.plot_numbers import numbers
 from jointbench.station.screen.traces import line
+from jointbench.station.screen.value_text import engineering
 
 _MOST_FRFS = 9
 
@@ -43,7 +45,7 @@ def write_agreement_report(
         results: by state.
     """
     sections = [
-        Section(f"state-{at}", label, tuple(_items(at, one)))
+        Section(f"state-{at}", _heading(label), tuple(_items(at, one)))
         for at, (label, one) in enumerate(results.items())
     ]
     report = Report(
@@ -56,6 +58,12 @@ def write_agreement_report(
         sections=tuple(sections),
     )
     write_report(report, path)
+
+
+def _heading(label: str) -> str:
+    """Return the label of a state, ``session@25000N``, in words."""
+    found = re.fullmatch(r"(.+)@([0-9.e+]+)N", label)
+    return f"{found[1]} at {engineering(float(found[2]), 'N')}" if found else label
 
 
 def _tiles(one: Agreement) -> list[Tile]:

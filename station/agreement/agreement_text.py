@@ -11,13 +11,14 @@ from jointbench.analysis.structures.agreement.paired_modes import (
 from jointbench.analysis.structures.agreement.suspect_coordinates import Suspect
 from jointbench.station.screen.terminal import console, table
 
+_LEAST = 0.001  # [%], the last digit of a difference
 PAIR_COLUMNS = (
     "measured [Hz]",
     "computed [Hz]",
     "difference, 95 % [%]",
     "MAC",
-    "damping [%]",
-    "difference, 95 % [%]",
+    "measured damping [%]",
+    "damping difference, 95 % [%]",
 )
 
 
@@ -93,4 +94,6 @@ def suspect_sentence(one: Suspect) -> str:
 
 
 def _with_interval(value: float, ends: tuple[float, float]) -> str:
-    return f"{100 * value:+.3f} ± {50 * (ends[1] - ends[0]):.2g}"
+    half = 50 * (ends[1] - ends[0])
+    words = f"± {half:.2g}" if half >= _LEAST else f"± <{_LEAST:g}"
+    return f"{100 * value:+.3f} {words}"

@@ -56,7 +56,8 @@ def chain_sections(done: ExaminedChain) -> tuple[Section, ...]:
     found = done.found
     tests = DataTable(
         "chi2 over degrees of freedom of each link with one free discrepancy at one "
-        "interface; ! marks a link that does not explain its data.",
+        "interface; ! marks a link that does not explain its data. The law takes the "
+        "spectrum as measured: surfaces are marked for faults of the instrument alone.",
         ("free discrepancy at", "surface", "contact law", "structure", "restored"),
         tuple(hypothesis_rows(done)),
     )
@@ -66,7 +67,7 @@ def chain_sections(done: ExaminedChain) -> tuple[Section, ...]:
             "The chain",
             (Plot("chain_figure", _CAPTION, chain_figure(done), HEIGHT),),
         ),
-        Section("links", "Where the disagreement enters", (Text(found.reason), tests)),
+        Section("links", "Where the disagreement enters", (tests,)),
         Section("causes", "Causes at the joint", _causes(done)),
         Section("moved", "Every later quantity", _moved(done)),
         *(contact_sections(found.contact) if structure_holds(found.chain) else ()),

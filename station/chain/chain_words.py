@@ -51,7 +51,9 @@ def cause_words(done: ExaminedChain) -> str:
         count = len(several.rivals)
         if not count:
             return own
-        others = "another set that fits" if count == 1 else f"{count} sets that fit"
+        others = (
+            f"{count} other sets that fit" if count > 1 else "another set that fits"
+        )
         return f"{own}, or {others} equally well"
     names = [name.partition("@") for name in done.found.names]
     return ", ".join(

@@ -10,6 +10,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 
 _STEPS = (1.0, 2.0, 5.0, 10.0)
+_TIMES = "·10"
 _MARKS = 5
 """Marks that an axis has room for at 300 pixels."""
 _PLAIN_FROM, _PLAIN_TO = 1e-3, 1e5
@@ -183,7 +184,10 @@ def _log_marks(scale: AxisScale) -> "zip[tuple[float, str]]":
     values = [v for v in steps if low <= v <= high]
     if len(values) < 3:
         values = [v for v in _even_marks(low, high, None) if v > 0]
-    return zip(scale.places(values), mark_texts(values), strict=True)
+    texts = mark_texts(values)
+    if any(_TIMES in text for text in texts):
+        texts = [_with_power(v, floor(log10(v) + 1e-9)) for v in values]
+    return zip(scale.places(values), texts, strict=True)
 
 
 def _even_marks(low: float, high: float, step: object) -> list[float]:
@@ -206,7 +210,10 @@ def mark_texts(values: Sequence[float]) -> list[str]:
     largest = max((abs(v) for v in values), default=0.0)
     if largest and not _PLAIN_FROM <= largest < _PLAIN_TO:
         power = floor(log10(largest) + 1e-9)
-        raised = str(power).translate(_RAISED)
-        return [f"{v / 10.0**power:.6g}·10{raised}" if v else "0" for v in values]
+        return [_with_power(v, power) if v else "0" for v in values]
     tiny = 1e-9 * largest
     return [f"{0.0 if abs(v) < tiny else v:.6g}" for v in values]
+
+
+def _with_power(value: float, power: int) -> str:
+    return f"{value / 10.0**power:.6g}{_TIMES}{str(power).translate(_RAISED)}"

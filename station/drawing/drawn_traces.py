@@ -39,6 +39,8 @@ GLYPHS = {
 _DASHES = {"dash": "6 4", "dot": "1.5 3.5", "dashdot": "6 3 1.5 3"}
 _MOST_GLYPHS = 400
 _MOST_NUMBERS = 400
+MOST_ACROSS_ON_PHONE = 10
+"""Columns of a map whose numbers and names a phone has room for."""
 _BAR_WIDTH = 0.8
 
 
@@ -297,13 +299,14 @@ def _map_numbers(
     if not isinstance(texts, list | tuple) or values.size > _MOST_NUMBERS:
         return ""
     span = max(ends[1] - ends[0], 1e-300)
+    kind = "tx cell dense" if values.shape[1] > MOST_ACROSS_ON_PHONE else "tx cell"
     found = []
     for row, (cells, up) in enumerate(zip(texts, places[1], strict=False)):
         for column, (cell, along) in enumerate(zip(cells, places[0], strict=False)):
             share = (values[row, column] - ends[0]) / span
             at = _at(round(along * WIDTH), round((1 - up) * HEIGHT))
             found.append(
-                f'<b class="tx cell" style="{at};color:{legible_on(share)}">'
+                f'<b class="{kind}" style="{at};color:{legible_on(share)}">'
                 f"{text_of(cell)}</b>"
             )
     return "".join(found)

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """A figure as markup: SVG that stretches with the window, and text that does not."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from jointbench.acquisition.file_access.quoting import visible
+from jointbench.station.drawing.axis_scale import plain_number
 from jointbench.station.drawing.drawn_traces import text_of
 from jointbench.station.drawing.figure_parts import (
     FigureParts,
+    PanelParts,
     Part,
     axis_title,
     figure_parts,
@@ -34,8 +36,10 @@ def figure_markup(figure: Part, *, height: int, caption: str = "") -> tuple[str,
     tall = max(height - _AROUND, 90)
     columns = "".join(
         f'<div class="column" style="--share:{own[0].width:.3g};{margins(parts, own)}">'
-        + _headings(parts, own[0].column, len(parts.columns))
-        + "".join(panel_markup(parts, one, tall) for one in own)
+        + "".join(
+            heading + panel_markup(parts, one, tall)
+            for heading, one in zip(_headings(parts, own), own, strict=True)
+        )
         + "</div>"
         for own in parts.columns
     )
@@ -66,20 +70,23 @@ def _words(parts: FigureParts, caption: str) -> str:
     return visible(". ".join(words))
 
 
-def _headings(parts: FigureParts, column: float, count: int) -> str:
-    """Return the annotations over a column: those nearest to its left edge."""
-    found = []
+def _headings(parts: FigureParts, own: Sequence[PanelParts]) -> list[str]:
+    """Return the annotations above each panel of a column: those nearest to its top."""
+    found = [""] * len(own)
     notes = parts.layout.get("annotations")
-    starts = [own[0].column for own in parts.columns]
+    starts = [column[0].column for column in parts.columns]
     for note in notes if isinstance(notes, list | tuple) else []:
-        if isinstance(note, Mapping) and note.get("xref") == "paper":
-            place = note.get("x", 0.0)
-            at = float(place) if isinstance(place, int | float) else 0.0
-            nearest = min(starts, key=lambda s: abs(s - at))
-            if nearest == column and note.get("text"):
-                found.append(f'<p class="heading">{text_of(note["text"])}</p>')
-    empty = '<p class="heading"></p>' if count > 1 and not found else ""
-    return "".join(found) or empty if _has_headings(parts) else ""
+        if not isinstance(note, Mapping) or note.get("xref") != "paper":
+            continue
+        across, up = plain_number(note.get("x"), 0.0), plain_number(note.get("y"), 1.0)
+        nearest = min(starts, key=lambda start: abs(start - across))
+        if nearest == own[0].column and note.get("text"):
+            tops = [abs(panel.span[1] - up) for panel in own]
+            words = f'<p class="heading">{text_of(note["text"])}</p>'
+            found[tops.index(min(tops))] += words
+    if len(starts) > 1 and not found[0] and _has_headings(parts):
+        found[0] = '<p class="heading"></p>'
+    return found
 
 
 def _has_headings(parts: FigureParts) -> bool:

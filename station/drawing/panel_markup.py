@@ -11,7 +11,12 @@ from jointbench.station.drawing.axis_scale import (
     numbers_of,
     plain_number,
 )
-from jointbench.station.drawing.drawn_traces import attributes, drawn_traces, text_of
+from jointbench.station.drawing.drawn_traces import (
+    MOST_ACROSS_ON_PHONE,
+    attributes,
+    drawn_traces,
+    text_of,
+)
 from jointbench.station.drawing.figure_parts import (
     FigureParts,
     PanelParts,
@@ -136,6 +141,7 @@ def _x_marks(marks: list[tuple[float, str]], scale: AxisScale) -> str:
     """Return the marks below a panel; names stand at a slant where they are long."""
     letters = sum(len(t) for _, t in marks)
     kind = "xm slant" if scale.names and letters > 40 else "xm"
+    kind += " dense" * (len(marks) > MOST_ACROSS_ON_PHONE)
     many = len(marks) > _MOST_ON_PHONE
     written = "".join(
         f'<span style="--x:{round(p * WIDTH)}"{" class=odd" * (many and k % 2)}>'

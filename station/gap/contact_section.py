@@ -22,6 +22,7 @@ from jointbench.station.report.gap_sentences import effect_words
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.traces import Trace, line, markers
+from jointbench.station.screen.value_text import engineering
 
 _TITLES = {
     "kn": "normal stiffness",
@@ -164,8 +165,13 @@ def _held_out(done: ContactDiagnosis) -> tuple[Item, ...]:
     if named:
         words += f", {100 * after.share_inside:.0f} % with the effect"
     columns = ("torque or preload", "values", "chi2/dof before", "chi2/dof after")
+    states = done.bench.data.states
+    torques = set(states.torque[np.isfinite(states.torque)].tolist())
     rows = tuple(
-        (f"{level:.4g}", f"{n:.0f}", f"{b / max(n, 1):.3g}", f"{a / max(n, 1):.3g}")
+        (
+            engineering(level, "N m" if level in torques else "N"),
+            *(f"{n:.0f}", f"{b / max(n, 1):.3g}", f"{a / max(n, 1):.3g}"),
+        )
         for level, n, b, a in _levels(before, after)
     )
     return (Text(f"{words}."), DataTable("By level.", columns, rows))

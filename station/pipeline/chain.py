@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 
 from jointbench.acquisition.basics.errors import NoHitFound, NoModeFound
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.basics.steady_memory import return_freed_memory
 from jointbench.acquisition.records.provenance import Provenance, Step
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
@@ -339,8 +340,14 @@ def _modes_stage(
         f"modes{at}",
         run.stages.key("modes", settings.modal, run.stages.keys[f"frf{at}"]),
         ModalResult,
-        lambda: identify_modes(frf, settings.modal, progress=run.progress),
+        lambda: _modes(frf, settings.modal, run.progress),
     )
+
+
+def _modes(frf: Frf, settings: ModalSettings, progress: Progress | None) -> ModalResult:
+    result = identify_modes(frf, settings, progress=progress)
+    return_freed_memory()
+    return result
 
 
 def _fill_stage(
@@ -402,4 +409,7 @@ def _observed(recording: Recording, settings: ChainSettings) -> Recording:
 def _measured(recordings: Sequence[Recording], settings: ChainSettings) -> MeasuredFrf:
     """Estimate the FRF of recordings whose noise the Kalman stage has seen."""
     window = requested_window(recordings, settings.window)
-    return measure_frf(recordings, window=window, estimator=settings.estimator)
+    measured = measure_frf(recordings, window=window, estimator=settings.estimator)
+    # The sums over hits are left; the fit begins without the memory that held them.
+    return_freed_memory()
+    return measured

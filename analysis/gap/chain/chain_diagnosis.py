@@ -317,7 +317,7 @@ def _basis(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> str:
 def _together(several: SeveralCauses) -> str:
     """Return the causes that explain the joint together, and their rivals."""
     sets = [tuple(cause.name for cause in several.causes), *several.rivals]
-    words = " or ".join(" + ".join(one) for one in sets)
+    words = " or ".join(" + ".join(one) for one in sets).replace("_", " ")
     dof = several.bench.blocks.dof
     return f"{words}: chi2 {several.fit.cost:.1f} for {dof} values"
 

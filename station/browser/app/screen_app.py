@@ -41,11 +41,12 @@ def screen_app(parts: Sequence[ScreenPart], access: ScreenAccess) -> "ASGIApp":
                 await stack.enter_async_context(part.running())
             yield
 
+    # In the order of how often they are asked for: a request is compared with each.
     routes: list[BaseRoute] = [
+        *(route for part in parts for route in part.routes),
         Route("/", first),
         *(_page(page, pages) for page in pages),
         *(_asset(asset) for asset in screen_assets()),
-        *(route for part in parts for route in part.routes),
     ]
     return ScreenGuard(Starlette(routes=routes, lifespan=running), access)
 

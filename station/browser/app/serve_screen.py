@@ -67,6 +67,7 @@ def screen_server(parts: Sequence[ScreenPart], access: ScreenAccess) -> "Server"
             access_log=False,
             lifespan="on",
             log_level="error",
+            proxy_headers=False,
             server_header=False,
             timeout_graceful_shutdown=_PATIENCE,
             ws="websockets-sansio",

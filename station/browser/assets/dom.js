@@ -48,6 +48,15 @@ export function say(element, text) {
 }
 
 /**
+ * Return the parts of a name, which a line may end between.
+ * @param {string} name for example "session:bolted.normal_stiffness"
+ * @returns {Child[]}
+ */
+export function breakable(name) {
+  return name.split(/(?<=[:._])/).flatMap((part) => [part, el("wbr")]);
+}
+
+/**
  * Return an element that must be there.
  * @param {string} id
  * @returns {HTMLElement}

@@ -2,7 +2,7 @@
 /** The screen Joint and gap: what was identified, what is missing, what to do next. */
 
 import { deskScreen } from "./desk_frame.js";
-import { el, fill } from "./dom.js";
+import { breakable, el, fill } from "./dom.js";
 import { shown } from "./numbers.js";
 import { withSd } from "./uncertain.js";
 
@@ -62,7 +62,7 @@ function jointPart(found) {
       el("tbody", {}, ...rows.map(([name, one]) => {
         const value = /** @type {any} */ (one);
         return el("tr", {},
-          el("td", { class: "words" }, name),
+          el("td", { class: "words long-name" }, ...breakable(name)),
           el("td", {}, value.identifiable === false ? "not determined"
             : withSd(value.value, value.sd)),
           el("td", {}, (value.interval_95 ?? []).map((/** @type {any} */ end) => shown(end, 5)).join(" to ")),

@@ -41,7 +41,7 @@ def bench_part(
         screens: counts those that are open.
         geometry: ``points`` by name and ``lines`` as JSON types; None without.
     """
-    from starlette.responses import JSONResponse, PlainTextResponse
+    from starlette.responses import JSONResponse, PlainTextResponse, Response
     from starlette.routing import Route, WebSocketRoute
 
     async def command(request: "Request") -> "Response":
@@ -53,14 +53,11 @@ def bench_part(
             return PlainTextResponse(str(error), 400)
         return JSONResponse(await submit(asked))
 
-    async def state(request: "Request") -> "Response":
-        return JSONResponse(feed.snapshot())
-
     async def hit(request: "Request") -> "Response":
         picture = feed.picture(request.path_params["number"])
         if picture is None:
             return PlainTextResponse("its samples are not available", 404)
-        return JSONResponse(picture)
+        return Response(picture, media_type="application/json")
 
     async def places(request: "Request") -> "Response":
         return JSONResponse(geometry)
@@ -69,7 +66,6 @@ def bench_part(
         pages=(SETUP, MEASURE),
         routes=(
             Route("/bench/command", command, methods=["POST"]),
-            Route("/bench/state", state),
             Route("/bench/hit/{number:int}", hit),
             Route("/bench/geometry", places),
             WebSocketRoute("/bench/live", LiveSocket(feed, screens).serve),

@@ -119,10 +119,11 @@ class _CommandDesk:
         loop = asyncio.get_running_loop()
         until = loop.time() + _PATIENCE
         while loop.time() < until:
+            turn = self.feed.turn
             for answer in self.feed.state.answers:
                 if answer.number == number:
                     return {"id": number, "done": answer.done, "words": answer.words}
-            await self.feed.wait(0.1)
+            await self.feed.news(turn)
         return {"id": number, "done": None, "words": "queued; its answer is due"}
 
 

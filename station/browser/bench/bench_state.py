@@ -3,13 +3,16 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import asdict
-from typing import Any
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
 
 from jointbench.station.bench_view.verdict_words import verdict_word
 from jointbench.station.session_events.condition_states import condition_states
 from jointbench.station.session_events.hit_events import GainForecast, HitJudged
 from jointbench.station.session_events.session_state import SessionState
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 _HITS = 24
 """Latest hits that are listed."""
@@ -24,34 +27,39 @@ def bench_state(state: SessionState) -> dict[str, Any]:
     average = state.average
     return {
         "last": state.last,
-        "begun": None if state.begun is None else asdict(state.begun),
+        "begun": None if state.begun is None else _fields(state.begun),
         "asked": state.asked,
         "done": state.done,
         "planned": state.planned,
         "conditions": [
-            {**asdict(one), "left": one.left} for one in condition_states(state)
+            {**_fields(one), "left": one.left} for one in condition_states(state)
         ],
         "hits": [_hit(state, n) for n in sorted(state.hits)[-_HITS:]],
         "struck": len(state.hits),
         "verdicts": dict(Counter(hit.verdict for hit in state.hits.values())),
         "trial": state.on_trial,
-        "run": None if state.run is None else asdict(state.run),
-        "tighten": None if state.tighten is None else asdict(state.tighten),
-        "average": None if average is None else asdict(average),
+        "run": None if state.run is None else _fields(state.run),
+        "tighten": None if state.tighten is None else _fields(state.tighten),
+        "average": None if average is None else _fields(average),
         "gain": _gain(state),
-        "settings": [asdict(one) for one in state.settings.values()],
-        "checks": [asdict(one) for one in state.checks],
+        "settings": [_fields(one) for one in state.settings.values()],
+        "checks": [_fields(one) for one in state.checks],
         "warnings": list(state.warnings[state.warnings_seen :]),
         "warnings_seen": state.warnings_seen,
         "messages": list(state.messages),
         "notes": list(state.notes),
-        "answers": [asdict(one) for one in state.answers],
+        "answers": [_fields(one) for one in state.answers],
         "paused": state.paused,
         "lost": state.lost,
         "open_loops": state.open_loops,
-        "ended": None if state.ended is None else asdict(state.ended),
+        "ended": None if state.ended is None else _fields(state.ended),
         "first_time": state.first_time,
     }
+
+
+def _fields(record: "DataclassInstance") -> dict[str, Any]:
+    """Return a record of JSON types; long curves are not copied."""
+    return {one.name: getattr(record, one.name) for one in fields(record)}
 
 
 def _hit(state: SessionState, number: int) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a screen draws of one hit: pulse, force spectrum, responses."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -15,6 +16,7 @@ _SPECTRUM = 0.05  # [s] of the force that the spectrum is taken of
 _SPECTRUM_POINTS = 200
 _FLOOR = -60.0  # [dB] below which a spectrum is not drawn
 _RESPONSE_BINS = 240
+_MOST_DIGITS = 20  # of a value far below any signal
 
 
 def hit_picture(
@@ -39,14 +41,15 @@ def hit_picture(
     row = next((i for i, c in enumerate(channels) if c["quantity"] == "force"), 0)
     edge = hit.trigger - hit.start
     force = samples[row] - np.median(samples[row])
+    others = [i for i in range(len(channels)) if i != row]
+    drawn = _responses(samples[others], edge, sample_rate)
     return {
         "hit": hit.number,
         "pulse": _pulse(force, edge, sample_rate),
         "spectrum": _spectrum(force, edge, sample_rate),
         "responses": {
-            str(channel["name"]): _response(samples[i], edge, sample_rate)
-            for i, channel in enumerate(channels)
-            if i != row
+            str(channels[i]["name"]): response
+            for i, response in zip(others, drawn, strict=True)
         },
     }
 
@@ -56,7 +59,7 @@ def _pulse(force: FloatArray, edge: int, rate: float) -> list[list[float]]:
     shown = force[first : first + round(_PULSE * rate)]
     step = max(1, shown.size // _PULSE_POINTS)
     time = (np.arange(shown.size) + first - edge) / rate * 1e3
-    return [_rounded(time[::step], 4), _rounded(shown[::step], 3)]
+    return [time[::step].round(4).tolist(), shown[::step].round(3).tolist()]
 
 
 def _spectrum(force: FloatArray, edge: int, rate: float) -> list[list[float]]:
@@ -71,20 +74,27 @@ def _spectrum(force: FloatArray, edge: int, rate: float) -> list[list[float]]:
     step = max(1, level.size // _SPECTRUM_POINTS)
     count = level.size // step
     highest = level[: count * step].reshape(count, step).max(axis=1)
-    return [_rounded(frequency[: count * step : step], 2), _rounded(highest, 2)]
+    drawn = frequency[: count * step : step]
+    return [drawn.round(2).tolist(), highest.round(2).tolist()]
 
 
-def _response(values: FloatArray, edge: int, rate: float) -> list[list[float]]:
-    per_bin = max(1, values.size // _RESPONSE_BINS)
-    count = values.size // per_bin
-    parts = (values[: count * per_bin] - np.median(values)).reshape(count, per_bin)
-    time = (np.arange(count) * per_bin - edge) / rate * 1e3
+def _responses(values: FloatArray, edge: int, rate: float) -> list[list[list[float]]]:
+    """Return time and extremes of each response, shape of ``values`` (n, samples)."""
+    per_bin = max(1, values.shape[1] // _RESPONSE_BINS)
+    count = values.shape[1] // per_bin
+    parts = values[:, : count * per_bin].reshape(values.shape[0], count, per_bin)
+    time = ((np.arange(count) * per_bin - edge) / rate * 1e3).round(3).tolist()
+    level = np.median(values, axis=1)
+    low, high = parts.min(axis=2), parts.max(axis=2)
     return [
-        _rounded(time, 3),
-        [float(f"{v:.4g}") for v in parts.min(axis=1)],
-        [float(f"{v:.4g}") for v in parts.max(axis=1)],
+        [time, *_to_digits(np.stack([low[i], high[i]]) - level[i])]
+        for i in range(values.shape[0])
     ]
 
 
-def _rounded(values: FloatArray, digits: int) -> list[float]:
-    return [round(float(value), digits) for value in values]
+def _to_digits(values: FloatArray) -> list[list[float]]:
+    """Return values with five digits of the largest, more than a plot resolves."""
+    largest = float(np.abs(values).max(initial=0.0))
+    digits = 4 - math.floor(math.log10(largest)) if largest else 0
+    rounded: list[list[float]] = values.round(min(digits, _MOST_DIGITS)).tolist()
+    return rounded

@@ -15,12 +15,6 @@ from jointbench.station.browser.guard.open_screens import OpenScreens
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
-_EVERY = 1.0
-"""Longest time between two states, whose clocks change [s]."""
-_FRAME = 0.03
-"""Least time between two sets of bins [s]; more would not be seen. Blocks of 50 ms are
-seen 40 or 60 ms apart by a feed that looks every 20 ms, and none of them may wait."""
-
 
 class LiveSocket:
     """Serves all open screens of a session."""
@@ -42,7 +36,8 @@ class LiveSocket:
         self._screens.change(1)
         leaving = asyncio.create_task(_left(socket))
         try:
-            await self._send_all(socket, leaving)
+            with self._feed.watched():
+                await self._send_all(socket, leaving)
         except (WebSocketDisconnect, RuntimeError, OSError):
             pass  # it left while something was sent
         finally:
@@ -52,20 +47,17 @@ class LiveSocket:
             self._screens.change(-1)
 
     async def _send_all(self, socket: "WebSocket", leaving: asyncio.Task[None]) -> None:
-        feed, loop = self._feed, asyncio.get_running_loop()
-        shown, stated, drawn, sent = -2, 0.0, 0.0, 0
+        feed, shown, sent = self._feed, 0, 0
         while not leaving.done():
-            now = loop.time()
-            if feed.state.last != shown or now - stated > _EVERY:
-                shown, stated = feed.state.last, now
-                await socket.send_text(feed.snapshot_text())
+            turn, state = feed.turn, feed.message()
+            if state.number != shown:
+                shown = state.number
+                await socket.send_text(state.text)
             ring = feed.ring
-            if ring is not None and ring.past > sent and now - drawn >= _FRAME:
-                drawn = now
+            if ring is not None and ring.past > sent:
                 message, sent = ring.message(sent), ring.past
                 await socket.send_bytes(message)
-            early = ring is not None and ring.past > sent
-            await feed.wait(_FRAME if early else _EVERY / 2)
+            await feed.news(turn)
 
 
 async def _left(socket: "WebSocket") -> None:

@@ -6,8 +6,9 @@ import json
 import shutil
 import time
 from collections import OrderedDict
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,9 @@ from jointbench.station.session_events.hit_events import HitJudged
 from jointbench.station.session_events.session_state import SessionState, state_after
 
 _EVERY = 0.02  # [s] between looks at the file
-_RETRY = 0.2  # [s] between looks for a file that is not there
+_AFTER_SAMPLES = 0.045  # [s] after samples came; a block of the recorder is 50 ms
+_UNWATCHED = 0.2  # [s] between looks where no screen is open, or no file is there
+_STATED = 1.0  # [s] that a state is shared for; its clocks show seconds
 WINDOW = 2.0
 """Time that the live view of the signals shows [s]."""
 _BINS = 800  # of that time
@@ -42,12 +45,27 @@ _STORED_UNIT = {
     Quantity.TEMPERATURE.value: "°C",
     Quantity.TACHO.value: "V",
 }
-_SHARED = 0.1  # [s] that a state is shared for
 _DISK_EVERY = 5.0  # [s] between looks at the disk
+
+
+@dataclass(frozen=True, slots=True)
+class StateMessage:
+    """The state as it is sent to every screen.
+
+    Attributes:
+        number: of the message.
+        text: JSON.
+    """
+
+    number: int
+    text: str
 
 
 class SessionFeed:
     """State, envelope and hits of one session; many screens may read them.
+
+    What they are sent is encoded once for all of them. Where no screen is open, the
+    samples are left unread, and the log is looked at less often.
 
     Attributes:
         path: of the session.
@@ -55,6 +73,7 @@ class SessionFeed:
         sensors: entries of the log about them, by name.
         state: after the last event.
         ring: envelope of the signals, None before the first sample.
+        turn: counts the news.
     """
 
     def __init__(self, path: Path) -> None:
@@ -68,13 +87,16 @@ class SessionFeed:
         self.sensors: dict[str, dict[str, Any]] = {}
         self.state = SessionState()
         self.ring: EnvelopeRing | None = None
+        self.turn = 0
         self._tail: RecordingTail | None = None
         self._entries = self._stored = 0
-        self._pictures: OrderedDict[int, dict[str, Any]] = OrderedDict()
+        self._pictures: OrderedDict[int, bytes] = OrderedDict()
         self._news = asyncio.Event()
+        self._told = self._stated = float("-inf")
+        self._watching = 0
         self._free: tuple[float, int | None] = (float("-inf"), None)
-        self._text = (float("-inf"), -2, "")
-        self._shown: tuple[int, dict[str, Any]] = (-2, {})
+        self._message = StateMessage(0, "")
+        self._content = ""
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
@@ -88,23 +110,36 @@ class SessionFeed:
                 await task
             self._close()
 
-    async def wait(self, seconds: float) -> None:
-        """Return when there is something new, or after a time [s]."""
-        with suppress(TimeoutError):
-            await asyncio.wait_for(self._news.wait(), seconds)
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Read samples for a screen within the context."""
+        self._watching += 1
+        try:
+            yield
+        finally:
+            self._watching -= 1
 
-    def snapshot(self) -> dict[str, Any]:
-        """Return the state for a screen, as it is now."""
-        number, content = self._shown
-        if number != self.state.last or not content:
-            content = bench_state(self.state)
-            self._shown = self.state.last, content
-        now = time.time()
+    async def news(self, turn: int) -> None:
+        """Return when there is something newer than at a turn, or after a second."""
+        if self.turn == turn:
+            await self._news.wait()
+
+    def message(self) -> StateMessage:
+        """Return the state for all screens, made again by an event or a second."""
+        now = time.monotonic()
+        changed = self._content == ""
+        if changed:
+            self._content = _json(self._state())
+        if changed or now - self._stated >= _STATED:
+            self._stated = now
+            text = f'{{"state":{self._content[:-1]},{_json(self._clocks())[1:]}}}'
+            self._message = StateMessage(self._message.number + 1, text)
+        return self._message
+
+    def _state(self) -> dict[str, Any]:
+        """Return what only entries of the log change."""
         return {
-            **content,
-            "now": now,
-            "seconds_left": seconds_left(self.state, now),
-            "free": self._room(),
+            **bench_state(self.state),
             "file": str(self.path),
             "window": WINDOW,
             "channels": self._channels(),
@@ -112,17 +147,16 @@ class SessionFeed:
             "sensors": self.sensors,
         }
 
-    def snapshot_text(self) -> str:
-        """Return the message with the state; screens that ask at once share it."""
-        now = time.monotonic()
-        at, number, text = self._text
-        if number != self.state.last or now - at > _SHARED:
-            text = json.dumps({"state": self.snapshot()}, separators=(",", ":"))
-            self._text = now, self.state.last, text
-        return text
+    def _clocks(self) -> dict[str, Any]:
+        now = time.time()
+        return {
+            "now": now,
+            "seconds_left": seconds_left(self.state, now),
+            "free": self._room(),
+        }
 
-    def picture(self, number: int) -> dict[str, Any] | None:
-        """Return a hit for a screen; None where its samples are not available.
+    def picture(self, number: int) -> bytes | None:
+        """Return a hit as JSON; None where its samples are not available.
 
         Args:
             number: of the hit, from 0.
@@ -132,22 +166,23 @@ class SessionFeed:
         return self._pictures.get(number)
 
     async def _follow(self) -> None:
-        while self.state.ended is None:
-            if self._tail is None and not self._open():
-                await asyncio.sleep(_RETRY)
-                continue
-            try:
-                fresh = self._look()
-            except (OSError, RuntimeError):  # the finished file takes its place
+        while True:
+            fresh, pause = False, _UNWATCHED
+            if self.state.ended is not None:
                 self._close()
-                continue
-            if fresh:
+            elif self._tail is not None or self._open():
+                try:
+                    fresh, pause = self._look()
+                except (OSError, RuntimeError):  # the finished file takes its place
+                    self._close()
+            if fresh or time.monotonic() - self._told >= _STATED:
                 self._tell()
-            await asyncio.sleep(_EVERY)
-        self._close()
+            await asyncio.sleep(pause)
 
     def _tell(self) -> None:
         """Wake whoever waits; an event that is set and cleared wakes all of them."""
+        self._told = time.monotonic()
+        self.turn += 1
         self._news.set()
         self._news.clear()
 
@@ -156,7 +191,7 @@ class SessionFeed:
         self._tail = recording_tail(self.path)
         if self._tail is not None:
             self.meta = self._tail.meta
-            self._entries = 0
+            self._entries, self._content = 0, ""
             return True
         with suppress(JointbenchError):
             entries, live = read_log(self.path)
@@ -165,24 +200,31 @@ class SessionFeed:
                 self._tell()
         return False
 
-    def _look(self) -> bool:
-        """Take what is new in the file; return whether there was anything."""
+    def _look(self) -> tuple[bool, float]:
+        """Take what is new in the file; return whether there was any, and a pause [s].
+
+        Samples come in blocks: a look sooner after one would find none.
+        """
         tail = self._tail
         assert tail is not None
-        stored = tail.stored()
-        fresh = stored > self._stored
-        if fresh:
+        stored, before = tail.stored() if self._watching else 0, self._stored
+        if stored > before:
             self._envelope(tail, stored)
         entries = tail.entries()
         if entries:
             # What they judge is in the file; the length read before may be older.
             tail.stored()
             self._take(entries)
-        return fresh or bool(entries)
+        if not self._watching:
+            return bool(entries), _UNWATCHED
+        if stored > before:
+            return True, _AFTER_SAMPLES
+        return bool(entries), _EVERY
 
     def _take(self, entries: tuple[dict[str, Any], ...]) -> None:
         """Take entries of the log; a hit is drawn while its samples are available."""
         first, self._entries = self._entries, self._entries + len(entries)
+        self._content = ""
         for entry in entries:
             if entry.get("kind") == "sensor":
                 self.sensors[str(entry.get("name"))] = entry
@@ -213,12 +255,13 @@ class SessionFeed:
         with suppress(OSError, RuntimeError):
             samples = self._tail.read(hit.start, hit.stop)
             if samples.shape[1] == hit.stop - hit.start:
-                self._pictures[hit.number] = hit_picture(
+                picture = hit_picture(
                     hit,
                     samples,
                     self.meta["channels"],
                     float(self.meta["sample_rate"]),
                 )
+                self._pictures[hit.number] = _json(picture).encode()
         while len(self._pictures) > _PICTURES:
             self._pictures.popitem(last=False)
 
@@ -243,3 +286,7 @@ class SessionFeed:
             with suppress(OSError, RuntimeError):
                 self._tail.close()
             self._tail = None
+
+
+def _json(content: object) -> str:
+    return json.dumps(content, separators=(",", ":"))

@@ -1,6 +1,8 @@
 """What the server of a session prepares: envelope, pictures of hits, gains."""
 
+import json
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import pytest
 from jointbench.station.browser.bench.bench_state import bench_state
 from jointbench.station.browser.bench.envelope_ring import EnvelopeRing
 from jointbench.station.browser.bench.hit_pictures import hit_picture
+from jointbench.station.browser.bench.session_feed import SessionFeed
 from jointbench.station.session_events.event_codec import Stamped
 from jointbench.station.session_events.flow_events import Asked
 from jointbench.station.session_events.hit_events import GainForecast, HitJudged
@@ -65,6 +68,16 @@ def test_a_picture_of_a_hit_shows_its_peak_and_its_first_zero() -> None:
     ]
     assert zero == pytest.approx(750.0, abs=25.0)
     assert min(picture["responses"]["a1"][1]) == pytest.approx(-80.0, rel=1e-3)
+
+
+def test_all_screens_of_a_second_are_sent_one_message(tmp_path: Path) -> None:
+    """It is encoded once; the clocks are beside what events change."""
+    feed = SessionFeed(tmp_path / "s.h5")
+    message = feed.message()
+    assert feed.message() is message
+    state = json.loads(message.text)["state"]
+    assert state["now"] > 0.0
+    assert state["hits"] == []
 
 
 def gain(hit: int, sd: float) -> GainForecast:
