@@ -5,8 +5,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import gamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.band_limited.matern_spectrum import BandLimited
 from jointbench.signal.fractal.instrument_blur import tip_fall
 
 
@@ -128,3 +130,21 @@ class LaySpectrum:
         fall = tip_fall(2 * self.hurst)
         traced: FloatArray = -fall * np.log1p(self.blur / fall * square)
         return traced
+
+
+def line_of(model: LaySpectrum) -> BandLimited:
+    """Return the spectrum of lines of a surface without its lay.
+
+    The integral of (1 + (u^2 + v^2) / q_r^2)^(-1-H) over v; a lay is left out, its
+    level is that of the mean of both directions.
+    """
+    corner = (2 * np.pi / model.roll_off) ** 2 + model.pivot**2
+    share = np.sqrt(np.pi) * gamma(model.hurst + 0.5) / gamma(model.hurst + 1)
+    return BandLimited(
+        level=float(model.level * np.sqrt(corner) * share),
+        pivot=model.pivot,
+        hurst=model.hurst,
+        roll_off=model.roll_off,
+        blur=model.blur,
+        noise=model.noise,
+    )

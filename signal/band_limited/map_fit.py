@@ -26,7 +26,7 @@ from jointbench.signal.band_limited.fit_limits import (
     WIDEST_TOLERANCE,
 )
 from jointbench.signal.band_limited.gamma_deviance import expected_deviance
-from jointbench.signal.band_limited.line_spectrum_of_map import line_of
+from jointbench.signal.band_limited.lay_spectrum import line_of
 from jointbench.signal.band_limited.map_likelihood import (
     MapLikelihood,
     MapMaximum,

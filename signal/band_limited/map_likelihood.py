@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, read_only
-from jointbench.signal.band_limited.lay_spectrum import LaySpectrum
-from jointbench.signal.band_limited.line_spectrum_of_map import line_of
+from jointbench.signal.band_limited.lay_spectrum import LaySpectrum, line_of
 from jointbench.signal.band_limited.map_parameters import (
     ANGLE,
     BLUR,
@@ -248,7 +247,7 @@ def _add_tip(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Steps:
+class _ScoringSteps:
     """Normal equations of the moving parameters, each scaled by its information.
 
     Attributes:
@@ -273,11 +272,15 @@ class _Steps:
         return step
 
 
-def _steps(information: FloatArray, slope: FloatArray, moving: BoolArray) -> _Steps:
+def _steps(
+    information: FloatArray, slope: FloatArray, moving: BoolArray
+) -> _ScoringSteps:
     """Return what the steps of all dampings have in common."""
     part = information[moving][:, moving]
     size = np.sqrt(part.diagonal())
-    return _Steps(moving, size, part / (size[:, None] * size), slope[moving] / size)
+    return _ScoringSteps(
+        moving, size, part / (size[:, None] * size), slope[moving] / size
+    )
 
 
 def _within(values: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
