@@ -65,11 +65,11 @@ def least(action: Callable[[], object]) -> float:
     return min(times)
 
 
-def compare(seed: int) -> None:
+def compare(seed: int, sides: list[int]) -> None:
     """Print times of S and of both fits for each kind and side."""
     print("| map | side | S [s] | band-limited fit [s] | over S | D by S | over S |")
     print("|---|---|---|---|---|---|---|")
-    for side in SIDES:
+    for side in sides:
         for kind in KINDS:
             areal = drawn(kind, side, seed)
             estimate = structure_function(areal)
@@ -110,8 +110,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--large", action="store_true")
+    parser.add_argument("--sides", type=int, nargs="+", default=list(SIDES))
     asked = parser.parse_args()
-    (large if asked.large else compare)(asked.seed)
+    if asked.large:
+        large(asked.seed)
+    else:
+        compare(asked.seed, asked.sides)
 
 
 if __name__ == "__main__":

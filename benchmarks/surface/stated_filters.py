@@ -3,8 +3,8 @@
 
 python -m benchmarks.surface.stated_filters --count 40 --seed N prints a table. Exact
 self-affine profiles are traced by a round tip on points four times as dense, or
-filtered by Gaussian weights in the time domain; the fit is told the radius or the
-cut-off. Of a tip the pull is that of the blur which the heights show without the tip as
+filtered by Gaussian weights in the time domain; the fit knows the radius or the
+cut-off. Of a tip the deviation is that of the blur which the heights show without the tip as
 a prior, from the stated one; of a cut-off that of H.
 """
 
@@ -91,12 +91,12 @@ def _mean(heights: FloatArray, waves: float) -> FloatArray:
     return found
 
 
-def tip_pull(fit: BandLimitedFit, hurst: float) -> float | None:
+def tip_deviation(fit: BandLimitedFit, hurst: float) -> float | None:
     """Return how far the fitted blur is from that of the stated tip [sd]."""
     return fit.tip_deviation
 
 
-def hurst_pull(fit: BandLimitedFit, hurst: float) -> float | None:
+def hurst_deviation(fit: BandLimitedFit, hurst: float) -> float | None:
     """Return how far H is from the truth, over a quarter of its interval [sd]."""
     if fit.hurst is None:
         return None
@@ -104,33 +104,33 @@ def hurst_pull(fit: BandLimitedFit, hurst: float) -> float | None:
     return 1.96 * (fit.hurst.value - hurst) / abs(end - fit.hurst.value)
 
 
-Pull = Callable[[BandLimitedFit, float], float | None]
-KINDS: dict[str, tuple[Callable[[int], tuple[Profile, float]], Pull]] = {
-    "radius of the tip: blur": (tip, tip_pull),
-    "radius of the tip: H": (tip, hurst_pull),
-    "lambda_s: H": (short_cut, hurst_pull),
-    "lambda_c: H": (long_cut, hurst_pull),
+Deviation = Callable[[BandLimitedFit, float], float | None]
+KINDS: dict[str, tuple[Callable[[int], tuple[Profile, float]], Deviation]] = {
+    "radius of the tip: blur": (tip, tip_deviation),
+    "radius of the tip: H": (tip, hurst_deviation),
+    "lambda_s: H": (short_cut, hurst_deviation),
+    "lambda_c: H": (long_cut, hurst_deviation),
 }
 
 
 def main() -> None:
-    """Fit and print the pulls."""
+    """Fit and print the deviations."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=40)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
     print(
-        "| stated: compared | n | no band | rms pull | mean | largest | within 2 sd |"
+        "| stated: compared | n | no band | rms deviation [sd] | mean | largest | within 2 sd |"
     )
     print("|---|---|---|---|---|---|---|")
     done: dict[tuple[object, int], tuple[BandLimitedFit, float]] = {}
-    for name, (make, pull) in KINDS.items():
+    for name, (make, deviation) in KINDS.items():
         found = []
         for seed in range(asked.seed, asked.seed + asked.count):
             if (make, seed) not in done:
                 profile, hurst = make(seed)
                 done[make, seed] = fit_band_limited([profile]), hurst
-            found.append(pull(*done[make, seed]))
+            found.append(deviation(*done[make, seed]))
         known = np.array([one for one in found if one is not None])
         inside = share_text(int(np.sum(np.abs(known) <= 2)), known.size)
         rms = float(np.sqrt(np.mean(known**2)))
