@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
 
 from lay_surfaces import Embedded
 
-SIDES, LARGE, REPEATS, PITCH, HEIGHT = (256, 512, 1024), 4096, 3, 1e-6, 1e-6
+SIDES, LARGE, REPEATS, PITCH, HEIGHT = (256, 512, 1024), 4096, 5, 1e-6, 1e-6
 # Roll-off along and across as shares of the side, H, blur [samples] and noise [-].
 KINDS = {
     "isotropic": (0.12, 0.12, 0.7, 0.0, 0.0),
@@ -55,14 +55,15 @@ def drawn(kind: str, side: int, seed: int) -> Areal:
     return Areal(kind, heights, (PITCH, PITCH), all_valid(heights))
 
 
-def least(action: Callable[[], object]) -> float:
-    """Return the least processor time of a few runs [s]."""
-    times = []
-    for _ in range(REPEATS):
-        started = time.process_time()
-        action()
-        times.append(time.process_time() - started)
-    return min(times)
+def least(*actions: Callable[[], object]) -> list[float]:
+    """Return the least processor time of each action, taken in turns [s]."""
+    times = np.full((REPEATS, len(actions)), np.inf)
+    for turn in times:
+        for k, action in enumerate(actions):
+            started = time.process_time()
+            action()
+            turn[k] = time.process_time() - started
+    return [float(one) for one in times.min(axis=0)]
 
 
 def compare(seed: int, sides: list[int]) -> None:
@@ -73,9 +74,11 @@ def compare(seed: int, sides: list[int]) -> None:
         for kind in KINDS:
             areal = drawn(kind, side, seed)
             estimate = structure_function(areal)
-            own = least(lambda areal=areal: structure_function(areal))
-            band = least(lambda areal=areal: fit_band_limited([areal]))
-            line = least(lambda estimate=estimate: fit_fractal(estimate))
+            own, band, line = least(
+                lambda areal=areal: structure_function(areal),
+                lambda areal=areal: fit_band_limited([areal]),
+                lambda estimate=estimate: fit_fractal(estimate),
+            )
             print(
                 f"| {kind} | {side} | {own:.4f} | {band:.3f} | {band / own:.1f} | "
                 f"{line:.3f} | {line / own:.1f} |",

@@ -42,6 +42,7 @@ class TakenDensity:
         v: the same across it, same shape.
         along: part of the roll-off's sum along the lay [-], same shape.
         across: part across it, same shape.
+        rest: 1 and both parts, same shape.
         fall: ln of the density over the level before the short cut, over 1 + H [-].
         square: of the wavenumber [rad^2/sample^2], same shape.
         tip: whether the short cut is a tip's path or a Gaussian.
@@ -53,6 +54,7 @@ class TakenDensity:
     v: FloatArray
     along: FloatArray
     across: FloatArray
+    rest: FloatArray
     fall: FloatArray
     square: FloatArray
     tip: bool
@@ -72,10 +74,10 @@ class TakenDensity:
 
     def _fall_by(self, parameter: int) -> FloatArray:
         """Return the derivative of `fall` by roll-off, ratio, angle or skew."""
-        model, rest = self.model, 1 + self.along + self.across
+        model, rest = self.model, self.rest
         middle = 1 + model.far * (model.ratio + 1 / model.ratio) / 2
         if parameter == ROLL_OFF:
-            return 2 * ((middle - 1) / middle - (rest - 1) / rest)
+            return 2 * (1 / rest - 1 / middle)
         if parameter == RATIO:
             whole = model.far * (model.ratio - 1 / model.ratio) / 2 / middle
             return whole - (self.along - self.across) / rest
@@ -119,12 +121,14 @@ def take_density(
     """
     u, v, along, across = model.parts(x, y)
     middle = 1 + model.far * (model.ratio + 1 / model.ratio) / 2
-    fall = np.log(middle / (1 + along + across))
+    rest = 1 + along
+    rest += across
+    fall = np.log(middle / rest)
     log_density = (1 + model.hurst) * fall
     if model.blur > 0:
         log_density += model.log_short_cut(square, tip=tip)
     density = model.level * np.exp(log_density)
-    return TakenDensity(model, u, v, along, across, fall, square, tip, density)
+    return TakenDensity(model, u, v, along, across, rest, fall, square, tip, density)
 
 
 def _over(part: FloatArray, wave: FloatArray) -> FloatArray:
@@ -194,7 +198,7 @@ class SeenBins:
         middle = values.size - _LAYS - _IMAGES * self.between.shape[1]
         seen = values[:bins].copy()
         seen[self.long] = values[bins:middle].reshape(-1, near) @ self.weight
-        seen += self.between @ values[middle:-_LAYS].reshape(-1, _IMAGES).sum(axis=1)
+        seen += self.between @ values[middle:-_LAYS].reshape(_IMAGES, -1).sum(axis=0)
         return seen
 
     def folded_rate(self, taken: TakenDensity, parameter: int) -> FloatArray:
@@ -247,7 +251,7 @@ def seen_bins(sample: MapSample) -> SeenBins:
         sample.down[long][:, None] + unit[1] * up.ravel()[near],
     )
     x, y = (
-        np.concatenate([own, about[k].ravel(), images[k].ravel(), edge * part(turn)])
+        np.concatenate([own, about[k].ravel(), images[k].T.ravel(), edge * part(turn)])
         for k, (own, part) in enumerate(((sample.along, np.cos), (sample.down, np.sin)))
     )
     passed = sample.transfer.power(np.hypot(sample.along, sample.down))
