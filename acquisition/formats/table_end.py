@@ -11,12 +11,14 @@ from jointbench.acquisition.formats.table_cells import split_row
 
 _COMPARED = 50
 """Rows above the last one that show how many digits a column is printed with."""
+_SURE = 10
+"""Rows above it whose equal digits are no chance [-]."""
 _PRINTED = re.compile(r"[+-]?\d*(?:\.(\d*))?(?:[eE][+-]?(\d*))?")
 
 
 def require_whole_end(
     rows: Sequence[str], delimiter: str | None, line: int, path: Path
-) -> None:
+) -> bool:
     """Refuse a last number with fewer digits than its column has throughout.
 
     A cut number is a number: ``-0.000`` of ``-0.0004``. Only a file without a line end
@@ -29,6 +31,9 @@ def require_whole_end(
         line: number of the last line, from 1.
         path: of the file.
 
+    Returns:
+        Whether the digits show that the last number is whole.
+
     Raises:
         FormatError: the last number is cut.
     """
@@ -36,7 +41,7 @@ def require_whole_end(
     above = [split_row(row, delimiter) for row in rows[-1 - _COMPARED : -1]]
     printed = {_digits(row[len(last) - 1]) for row in above if len(row) == len(last)}
     if len(above) < 2 or len(printed) != 1:
-        return
+        return False
     (wanted,), found = printed, _digits(last[-1])
     if wanted is not None and found is not None and found < wanted:
         raise FormatError(
@@ -44,6 +49,7 @@ def require_whole_end(
             f"above have {wanted[1]} digits after the point and no line end follows; "
             "the file is cut short: use another copy"
         )
+    return found is not None and found == wanted and len(above) >= _SURE
 
 
 def _digits(cell: str) -> tuple[int, int] | None:

@@ -61,6 +61,7 @@ class Table:
         layout: as recognised, for provenance.
         rows: the text of each row; empty for an array file.
         delimiter: what separates the columns; None for blanks.
+        open_end: whether the text ends in its last row, which may lack digits.
     """
 
     path: Path
@@ -70,6 +71,7 @@ class Table:
     layout: str
     rows: Sequence[str] = ()
     delimiter: str | None = None
+    open_end: bool = False
 
     def where(self, row: int) -> str:
         """Return the place of a row: its line, or its index in an array."""
@@ -172,8 +174,9 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     )
     rows = _with_points([lines[i] for i in numbers], numbers, start, path)
     values = parse_rows(rows, numbers, start, path)
-    if numbers[-1] == len(lines) - 1:
-        require_whole_end(rows, start.delimiter, len(lines), path)
+    open_end = bool(numbers[-1] == len(lines) - 1)
+    if open_end:
+        open_end = not require_whole_end(rows, start.delimiter, len(lines), path)
     delimiter = DELIMITER_NAMES.get(start.delimiter, start.delimiter)
     return Table(
         path=path,
@@ -183,6 +186,7 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
         layout=f"text, {encoding}, columns separated by {delimiter}",
         rows=rows,
         delimiter=start.delimiter,
+        open_end=open_end,
     )
 
 

@@ -5,6 +5,7 @@ python benchmarks/surface/hostile.py --files 2000 prints a table for docs/surfac
 """
 
 import argparse
+import codecs
 import random
 import tempfile
 import time
@@ -28,13 +29,14 @@ from jointbench.simulators.rough_surfaces.surface_files import (
 )
 
 SLOW = 5.0  # [s]
+SIDE = 16  # points of a line of the map [-]
 COLUMNS = {".xyz": "x:um,y:um,z:um"}
 HOSTILE = (b"1e999", b"nan", b"Bad", b"-25400", b"\x00", b"9" * 400, b"=1+1", b"'", b"")
 
 
 def originals(folder: Path) -> list[Path]:
     """Write one whole file of each format."""
-    areal = rough_map(24, 16, spacing=0.25e-6, dimension=1.5, roughness=1e-9, seed=1)
+    areal = rough_map(24, SIDE, spacing=0.25e-6, dimension=1.5, roughness=1e-9, seed=1)
     line = rough_profile(300, spacing=0.2e-6, dimension=1.5, roughness=1e-9, seed=1)
     paths = []
     for language in ENCODINGS:
@@ -45,7 +47,8 @@ def originals(folder: Path) -> list[Path]:
     write_surfcom(line, paths[-4])
     write_utf16_table(line, paths[-3])
     write_wyko(areal, paths[-2])
-    points = [f"{i % 16},{i // 16},{z:.5f}" for i, z in enumerate(areal.heights.flat)]
+    heights = 1e6 * areal.heights.ravel()
+    points = [f"{i % SIDE},{i // SIDE},{z:.5f}" for i, z in enumerate(heights)]
     paths[-1].write_text("\n".join(points))
     return paths
 
@@ -94,7 +97,27 @@ MUTATIONS: tuple[Callable[[bytes, random.Random], bytes], ...] = (
 )
 
 
-def outcome(path: Path, whole: np.ndarray) -> str:
+def whole_lines(source: bytes, cut: bytes) -> bool:
+    """Return whether what is left of a file is whole lines, and whole lines of a map.
+
+    Nothing in such a file differs from a shorter measurement.
+    """
+    wide = source.startswith(codecs.BOM_UTF16_LE)
+    if len(cut) >= len(source) or source[: len(cut)] != cut or (wide and len(cut) % 2):
+        return False
+    encoding = "utf-16-le" if wide else "latin-1"
+    text, left = (
+        one.decode(encoding).replace("\r\n", "\n") for one in (cut, source[len(cut) :])
+    )
+    if not (text.endswith("\n") or left.startswith("\n")):
+        return False
+    last = text.rstrip("\n").rpartition("\n")[2].split(",")
+    rows = text.rstrip("\n").count("\n") + 1
+    # Points of the map, see `originals`: its first line alone is a profile.
+    return wide or rows <= SIDE or int(last[0]) == SIDE - 1
+
+
+def outcome(path: Path, whole: np.ndarray, source: bytes = b"") -> str:
     """Read a file and say in a word what came of it."""
     started = time.perf_counter()
     try:
@@ -110,6 +133,8 @@ def outcome(path: Path, whole: np.ndarray) -> str:
         shorter = surface.heights.size < whole.size
         if shorter and not cautions(surface.provenance):
             word = f"shorter, without a caution ({path.suffix})"
+            if whole_lines(source, path.read_bytes()):
+                word = f"shorter by whole lines, which leaves no trace ({path.suffix})"
     return "slow" if time.perf_counter() - started > SLOW else word
 
 
@@ -130,7 +155,8 @@ def main() -> None:
             mutate = MUTATIONS[(k // len(sources)) % len(MUTATIONS)]
             target = folder / f"mutated{source.suffix}"
             target.write_bytes(mutate(source.read_bytes(), draw))
-            word = outcome(target, wholes[k % len(sources)].heights)
+            whole = wholes[k % len(sources)].heights
+            word = outcome(target, whole, source.read_bytes())
             found.setdefault(mutate.__name__, Counter())[word] += 1
     print("| mutation | outcome | files |\n|---|---|---|")
     for name, counted in found.items():

@@ -26,6 +26,10 @@ HEADINGS = {
     "verdicts": "Verdicts: `python -m benchmarks.surface.verdicts --seeds N`",
     "band-limited": "Band-limited surfaces drawn by Cholesky factors, 3,000 points: "
     "`python -m benchmarks.surface.band_limited --count N --seed N --log PATH`",
+    "kinds": "Names of machined surfaces: "
+    "`python -m benchmarks.surface.kinds --count N --seed N`",
+    "filters": "Filters that the instrument states: "
+    "`python -m benchmarks.surface.stated_filters --count 30 --seed N`",
     "roll-off": "Saturated and fractal profiles: "
     "`python -m benchmarks.surface.roll_off --count 20 --seed 7000`",
     "measured": "Band-limited fit of measured surfaces: "
@@ -35,6 +39,8 @@ HEADINGS = {
     "figure9": "The 2023 paper's Fig. 9: `python -m benchmarks.surface.figure_9`",
     "speed": "Time, memory and precision compared with other programs: "
     "`python -m benchmarks.surface.speed`",
+    "map-speed": "Time and memory of the fits of maps: "
+    "`python -m benchmarks.surface.map_speed --sides 512 --seed N`",
     "hostile": "Mutated files: "
     "`python -m benchmarks.surface.hostile --files 2000 --seed N`",
 }

@@ -26,8 +26,7 @@ from jointbench.signal.band_limited.fit_limits import (
     WIDEST_TOLERANCE,
 )
 from jointbench.signal.band_limited.gamma_deviance import expected_deviance
-from jointbench.signal.band_limited.lay_spectrum import seen_bins
-from jointbench.signal.band_limited.line_spectrum_of_map import line_of
+from jointbench.signal.band_limited.lay_spectrum import line_of
 from jointbench.signal.band_limited.map_likelihood import (
     MapLikelihood,
     MapMaximum,
@@ -52,6 +51,7 @@ from jointbench.signal.band_limited.moment_units import in_metres
 from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
 )
+from jointbench.signal.band_limited.seen_bins import seen_bins
 from jointbench.signal.band_limited.weighted_draws import WIDEST_ROLL_OFF
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Whittle's likelihood of a map's spectrum, and its maximum by scoring."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
-from jointbench.signal.band_limited.lay_spectrum import LaySpectrum, SeenBins
-from jointbench.signal.band_limited.line_spectrum_of_map import line_of
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, read_only
+from jointbench.signal.band_limited.lay_spectrum import LaySpectrum, line_of
 from jointbench.signal.band_limited.map_parameters import (
     ANGLE,
     BLUR,
@@ -18,6 +18,7 @@ from jointbench.signal.band_limited.map_parameters import (
     ROLL_OFF,
     SKEW,
 )
+from jointbench.signal.band_limited.seen_bins import SeenBins, SeenDensity
 from jointbench.signal.band_limited.spectral_likelihood import (
     FLOOR,
     HURST_RANGE,
@@ -42,8 +43,8 @@ _STEPS, _TRIALS = 40, 8
 """Most steps of a search, and most dampings of one [-]."""
 _SETTLED = 2e-3
 """Expected gain of the log-likelihood that ends a search [-]."""
-_NUDGE = np.array([0, 1e-4, 1e-4, 1e-3, 0, 1e-4, 1e-4, 1e-4])
-"""Steps of the derivatives of ln density; level and noise have closed ones."""
+_NUDGE = 1e-3
+"""Step of the derivative of a stated tip's prior over the blur, or over 1 [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,41 +56,38 @@ class MapLikelihood:
         tolerance: standard deviation of ln density by which each bin may differ from
             the model [-].
         heeds_tip: whether the stated radius of a stylus is a prior of the blur.
+        counts: ordinates of each bin, fewer where the model is only tolerated [-].
+        pivot: wavenumber of the level [rad/sample]: the geometric middle of the band.
+        unit_noise: variance of white heights with the least density of the spectrum.
     """
 
     bins: SeenBins
     tolerance: float = 0.0
     heeds_tip: bool = True
+    counts: FloatArray = field(init=False)
+    pivot: float = field(init=False)
+    unit_noise: float = field(init=False)
 
-    @property
-    def pivot(self) -> float:
-        """Wavenumber of the level [rad/sample]: the geometric middle of the band."""
-        top = min(np.pi, self.bins.sample.transfer.highest)
-        return float(np.sqrt(top * 2 * np.pi / self.bins.sample.length))
-
-    @property
-    def counts(self) -> FloatArray:
-        """Ordinates of each bin, fewer where the model is only tolerated [-]."""
-        count = self.bins.sample.count
-        counts: FloatArray = count / (1 + count * self.tolerance**2)
-        return counts
-
-    @property
-    def unit_noise(self) -> float:
-        """Variance of white heights with the least density of the spectrum."""
-        sample = self.bins.sample
-        return 4 * np.pi**2 / sample.stretch * sample.floor
+    def __post_init__(self) -> None:
+        """Work out what a search looks at hundreds of times."""
+        sample, tolerance = self.bins.sample, self.tolerance
+        counts = read_only(sample.count / (1 + sample.count * tolerance**2))
+        top = min(np.pi, sample.transfer.highest)
+        pivot = math.sqrt(top * 2 * np.pi / sample.length)
+        object.__setattr__(self, "counts", counts)
+        object.__setattr__(self, "pivot", pivot)
+        object.__setattr__(self, "unit_noise", self.bins.cell * sample.floor)
 
     def model(self, at: FloatArray) -> LaySpectrum:
         """Return the surface of given parameters."""
         return LaySpectrum(
-            level=float(np.exp(at[LEVEL])),
+            level=math.exp(at[LEVEL]),
             pivot=self.pivot,
             hurst=float(at[HURST]),
-            roll_off=float(np.exp(at[ROLL_OFF])),
+            roll_off=math.exp(at[ROLL_OFF]),
             blur=max(0.0, float(at[BLUR])),
             noise=max(0.0, float(at[NOISE])) * self.unit_noise,
-            ratio=float(np.exp(at[RATIO])),
+            ratio=math.exp(at[RATIO]),
             angle=float(at[ANGLE]),
             skew=float(at[SKEW]),
         )
@@ -110,12 +108,16 @@ class MapLikelihood:
 
     def density(self, at: FloatArray) -> FloatArray:
         """Return the expected spectrum in each bin."""
-        return np.maximum(self.bins.density(self.model(at)), FLOOR)
+        return self.seen(at).density
+
+    def seen(self, at: FloatArray) -> SeenDensity:
+        """Return the expected spectrum in each bin, for its derivatives as well."""
+        return self.bins.seen(self.model(at), least=FLOOR)
 
     def of_density(self, density: FloatArray, at: FloatArray) -> float:
         """Return the log-likelihood of an expected spectrum."""
         power = self.bins.sample.power
-        total = -float(np.sum(self.counts * (np.log(density) + power / density)))
+        total = -float(self.counts @ (np.log(density) + power / density))
         if self.heeds_tip and self.bins.sample.transfer.tip is not None:
             total -= 0.5 * self.tip_surprise(at) ** 2
         return total
@@ -165,28 +167,28 @@ def maximise_map(
         Marquardt; parameters at an active bound are held.
     """
     lower, upper = likelihood.bounds
-    here = np.clip(start, lower, upper)
-    density = likelihood.density(here)
-    value, damping = likelihood.of_density(density, here), 1e-3
-    information, slope = _scores(likelihood, here, density, free)
+    here = _within(start, lower, upper)
+    seen = likelihood.seen(here)
+    value, damping = likelihood.of_density(seen.density, here), 1e-3
+    information, slope = _scores(likelihood, here, seen, free)
     for _ in range(_STEPS):
-        moving = free & (np.diag(information) > 0)
+        moving = free & (information.diagonal() > 0)
         moving &= ~((here <= lower) & (slope < 0)) & ~((here >= upper) & (slope > 0))
-        if not _step(information, slope, moving, 0.0) @ slope > 2 * _SETTLED:
+        steps = _steps(information, slope, moving)
+        if not steps.damped(0.0) @ slope > 2 * _SETTLED:
             break
         before = value
         for _ in range(_TRIALS):
-            step = _step(information, slope, moving, damping)
-            there = np.clip(here + step, lower, upper)
-            trial = likelihood.density(there)
-            reached = likelihood.of_density(trial, there)
+            there = _within(here + steps.damped(damping), lower, upper)
+            trial = likelihood.seen(there)
+            reached = likelihood.of_density(trial.density, there)
             if reached > value:
-                here, density, value, damping = there, trial, reached, 0.2 * damping
+                here, seen, value, damping = there, trial, reached, 0.2 * damping
                 break
             damping = max(1e-3, 8 * damping)
         if value - before < _SETTLED:
             break
-        information, slope = _scores(likelihood, here, density, free)
+        information, slope = _scores(likelihood, here, seen, free)
     return _with_long_waves_along(MapMaximum(here, value, information))
 
 
@@ -202,24 +204,25 @@ def _with_long_waves_along(found: MapMaximum) -> MapMaximum:
 
 
 def _scores(
-    likelihood: MapLikelihood, at: FloatArray, density: FloatArray, free: BoolArray
+    likelihood: MapLikelihood, at: FloatArray, seen: SeenDensity, free: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return Fisher's information and the derivatives of the log-likelihood."""
-    sample, counts = likelihood.bins.sample, likelihood.counts
-    rates = np.zeros((at.size, density.size))
-    cell = 4 * np.pi**2 / sample.stretch
-    white = likelihood.unit_noise / cell
-    rates[LEVEL] = (density - max(0.0, float(at[NOISE])) * white) / density
-    rates[NOISE] = white / density
-    logs = np.log(density)
-    for k in np.flatnonzero(free & (_NUDGE > 0)):
-        moved = at.copy()
-        nudge = _NUDGE[k] * max(1.0, abs(float(at[k])) if k == BLUR else 1.0)
-        moved[k] += nudge
-        rates[k] = (np.log(likelihood.density(moved)) - logs) / nudge
-    rates[~free] = 0.0
-    information = (rates * counts) @ rates.T
-    slope: FloatArray = rates @ (counts * (sample.power / density - 1))
+    sample, counts, density = likelihood.bins.sample, likelihood.counts, seen.density
+    white = likelihood.unit_noise / likelihood.bins.cell
+    places = free.nonzero()[0]
+    rates = np.empty((places.size, density.size))
+    for row, k in enumerate(places.tolist()):
+        if k == LEVEL:
+            rates[row] = density - max(0.0, float(at[NOISE])) * white
+        elif k == NOISE:
+            rates[row] = white
+        else:
+            rates[row] = seen.rate(k)
+    rates /= density
+    information = np.zeros((at.size, at.size))
+    information[np.ix_(free, free)] = (rates * counts) @ rates.T
+    slope = np.zeros(at.size)
+    slope[free] = rates @ (counts * (sample.power / density - 1))
     if likelihood.heeds_tip and sample.transfer.tip is not None and free[BLUR]:
         _add_tip(likelihood, at, information, slope)
     return information, slope
@@ -238,19 +241,49 @@ def _add_tip(
     information[BLUR, BLUR] += tip_information(at, width)
     here = likelihood.tip_surprise(at)
     moved = at.copy()
-    nudge = 1e-3 * max(1.0, float(at[BLUR]))
+    nudge = _NUDGE * max(1.0, float(at[BLUR]))
     moved[BLUR] += nudge
     slope[BLUR] -= here * (likelihood.tip_surprise(moved) - here) / nudge
 
 
-def _step(
-    information: FloatArray, slope: FloatArray, moving: BoolArray, damping: float
-) -> FloatArray:
-    """Return the damped step of the moving parameters."""
-    step = np.zeros(slope.size)
-    if moving.any():
-        size = np.sqrt(np.diag(information)[moving])
-        scaled = information[np.ix_(moving, moving)] / np.outer(size, size)
-        scaled += (damping + 1e-9) * np.eye(size.size)
-        step[moving] = np.linalg.solve(scaled, slope[moving] / size) / size
-    return step
+@dataclass(frozen=True, slots=True, eq=False)
+class _ScoringSteps:
+    """Normal equations of the moving parameters, each scaled by its information.
+
+    Attributes:
+        moving: shape (n_parameters,).
+        size: root of the information of the moving ones, shape (n_moving,).
+        curvature: shape (n_moving, n_moving).
+        slope: of the log-likelihood over `size`, shape (n_moving,).
+    """
+
+    moving: BoolArray
+    size: FloatArray
+    curvature: FloatArray
+    slope: FloatArray
+
+    def damped(self, damping: float) -> FloatArray:
+        """Return the damped step of all parameters."""
+        step = np.zeros(self.moving.size)
+        if self.size.size:
+            curvature = self.curvature.copy()
+            curvature.flat[:: self.size.size + 1] += damping + 1e-9
+            step[self.moving] = np.linalg.solve(curvature, self.slope) / self.size
+        return step
+
+
+def _steps(
+    information: FloatArray, slope: FloatArray, moving: BoolArray
+) -> _ScoringSteps:
+    """Return what the steps of all dampings have in common."""
+    part = information[moving][:, moving]
+    size = np.sqrt(part.diagonal())
+    return _ScoringSteps(
+        moving, size, part / (size[:, None] * size), slope[moving] / size
+    )
+
+
+def _within(values: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Return values within their bounds; `numpy.clip` takes longer to be called."""
+    within: FloatArray = np.minimum(np.maximum(values, lower), upper)
+    return within

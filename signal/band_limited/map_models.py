@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.band_limited.lay_spectrum import seen_bins
 from jointbench.signal.band_limited.map_likelihood import (
     MapLikelihood,
     MapMaximum,
@@ -22,6 +21,7 @@ from jointbench.signal.band_limited.map_parameters import (
     ROLL_OFF,
     SKEW,
 )
+from jointbench.signal.band_limited.seen_bins import seen_bins
 
 LAY_RATIO = 16.3
 """Twice the gain in log-likelihood by a lay above which it is named: a level of 0.1 %

@@ -50,7 +50,7 @@ def shortest_map_wave(sample: MapSample, model: LaySpectrum) -> float:
     omega = np.geomspace(2 * np.pi / sample.length, np.pi / pitch, 200)
     turn = np.pi * (np.arange(_TURNS) + 0.5) / _TURNS
     x, y = omega[:, None] * np.cos(turn), omega[:, None] * np.sin(turn)
-    left = model.short_cut(omega, np.zeros_like(omega), tip=tip)
+    left = model.short_cut(np.square(omega), tip=tip)
     seen = model.surface(x, y).mean(axis=1) * left * sample.transfer.power(omega)
     shown = seen > model.noise * sample.stretch / (4 * np.pi**2)
     shown &= left >= 0.25

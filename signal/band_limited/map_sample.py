@@ -164,6 +164,11 @@ def map_sample(areal: Areal, *, degree: int = 1) -> MapSample | None:
     )
 
 
+def sectors_of(shape: tuple[int, ...]) -> int:
+    """Return the number of directions in which the spectrum of a map is binned."""
+    return int(np.clip(min(shape) // _SECTOR_POINTS, *_SECTORS))
+
+
 def _without_plane(patch: FloatArray) -> FloatArray:
     """Return a copy of complete heights without their least-squares plane."""
     rows, columns = (np.linspace(-1, 1, n) for n in patch.shape)
@@ -188,7 +193,7 @@ def _binned(
     index = np.where(index > rows // 2, index - rows, index)
     right = 2 * np.pi * across / columns
     up = 2 * np.pi * index / (rows * stretch)
-    sectors = int(np.clip(min(shape) // _SECTOR_POINTS, *_SECTORS))
+    sectors = sectors_of(shape)
     smallest = float(_ring(np.array(min(right[0], up[1]) ** 2)))
     largest = float(_ring(np.array(right[-1] ** 2 + up.max() ** 2)))
     rings = 2 + int(largest - smallest)

@@ -10,8 +10,8 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.band_limited.band_records import BandLimitedFit
 from jointbench.signal.band_limited.known_transfer import known_transfer
-from jointbench.signal.band_limited.lay_spectrum import seen_bins
 from jointbench.signal.band_limited.map_sample import MapSample, map_sample
+from jointbench.signal.band_limited.seen_bins import seen_bins
 from jointbench.signal.surface.levelling import level
 from jointbench.signal.surface.line_spectrum import line_spectrum
 

@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.band_limited.band_records import BandLimitedFit, RollOffVerdict
-from jointbench.signal.band_limited.map_sample import map_sample
+from jointbench.signal.band_limited.map_sample import map_sample, sectors_of
 from jointbench.signal.band_limited.spectrum_sections import spectrum_sections
 from jointbench.signal.surface.levelling import level
 from jointbench.signal.surface.periodic_marks import PeriodicMarks, periodic_marks
@@ -30,7 +30,15 @@ _OF_SKEWNESS = 6.0
 _CLEAR = 4.0
 """Skewness over its scatter from which it is no chance [-]."""
 _TURNS = 36
-"""Directions of the search for a second lay [-]."""
+"""Most directions of the search for a second lay [-]."""
+_RING, _RINGS = 0.3, 4
+"""Width of a ring in ln wavenumber, and rings of an octave and a half [-]."""
+_UNEVEN = 1.5
+"""Least power of the first direction over the mean of all [-]."""
+_SMOOTHED = float(np.sqrt(6) / 4)
+"""Scatter of a profile of directions smoothed by 1, 2, 1 over that of each [-]."""
+_NO_CHANCE = 5.0
+"""Least rise of a second lay over its scatter [-]; many directions are looked at."""
 _SECOND = 0.28
 """Least height of a second lay over the first, above the valley between [-]."""
 
@@ -174,29 +182,52 @@ def _skewness(surface: Surface) -> tuple[float, bool]:
 
 
 def _two_directions(areal: Areal) -> tuple[float, ...]:
-    """Return two directions in which scratches run, none for one lay or none."""
+    """Return two directions in which scratches run, none for one lay or none.
+
+    They are looked for at all wavelengths together and in each octave and a half:
+    scratches of some widths may cross where others of one direction hide it.
+    """
     sample = map_sample(areal)
     if sample is None:
         return ()
+    # Finer directions than the sample's sectors would leave every third one empty.
+    turns = min(_TURNS, sectors_of(sample.shape))
     turn = np.arctan2(sample.down, sample.along) + np.pi / 2
-    radius = np.hypot(sample.along, sample.down)
-    label = np.minimum((turn / np.pi * _TURNS).astype(np.int64), _TURNS - 1)
-    ring = np.floor(np.log(radius) / 0.3).astype(np.int64)
+    label = np.minimum((turn / np.pi * turns).astype(np.int64), turns - 1)
+    ring = np.floor(np.log(np.hypot(sample.along, sample.down)) / _RING).astype(int)
     ring -= ring.min()
     # Power over the mean of its ring: each wavelength has one vote per ordinate.
     weight = sample.count
     mean = np.bincount(ring, weight * sample.power) / np.maximum(
         np.bincount(ring, weight), 1e-9
     )
-    share = np.bincount(label, weight * sample.power / mean[ring], minlength=_TURNS)
-    number = np.maximum(np.bincount(label, weight, minlength=_TURNS), 1e-9)
-    profile = share / number
-    profile = (np.roll(profile, 1) + 2 * profile + np.roll(profile, -1)) / 4
-    return _two_peaks(profile)
+    share = sample.power / mean[ring]
+    starts = range(int(ring.max()) + 2 - _RINGS)
+    parts = [ring >= 0, *((ring >= k) & (ring < k + _RINGS) for k in starts)]
+    for part in parts:
+        counted = np.bincount(label[part], weight[part], minlength=turns)
+        number = np.asarray(counted, dtype=np.float64)
+        total = np.bincount(label[part], (weight * share)[part], minlength=turns)
+        if not number.all():
+            continue
+        found = _two_peaks(_smoothed(total / number), number)
+        if found:
+            return found
+    return ()
 
 
-def _two_peaks(profile: FloatArray) -> tuple[float, ...]:
-    """Return the directions of two peaks with a valley between on both sides."""
+def _smoothed(profile: FloatArray) -> FloatArray:
+    smooth: FloatArray = (np.roll(profile, 1) + 2 * profile + np.roll(profile, -1)) / 4
+    return smooth
+
+
+def _two_peaks(profile: FloatArray, number: FloatArray) -> tuple[float, ...]:
+    """Return the directions of two peaks with a valley between on both sides.
+
+    Args:
+        profile: mean power in each direction over that of all, shape (n_directions,).
+        number: independent ordinates in each direction, same shape.
+    """
     peaks = np.flatnonzero(
         (profile >= np.roll(profile, 1)) & (profile > np.roll(profile, -1))
     )
@@ -210,8 +241,10 @@ def _two_peaks(profile: FloatArray) -> tuple[float, ...]:
         min(profile[high:].min(), profile[: low + 1].min()),
     ]
     rise = profile[second] - max(valleys)
-    if rise < _SECOND * (profile[first] - max(valleys)) or profile[first] < 1.5:
+    if rise < _SECOND * (profile[first] - max(valleys)) or profile[first] < _UNEVEN:
+        return ()
+    if rise < _NO_CHANCE * _SMOOTHED * profile[second] / np.sqrt(number[second]):
         return ()
     # Power is across a lay; sectors begin at -90 degrees.
-    found = [(np.pi * (k + 0.5) / _TURNS) for k in (low, high)]
+    found = [(np.pi * (k + 0.5) / profile.size) for k in (low, high)]
     return tuple(sorted(float((a + np.pi / 2) % np.pi - np.pi / 2) for a in found))

@@ -9,7 +9,9 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import FormatError, SamplingError
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.even_steps import fit_even_steps
+from jointbench.acquisition.formats.heights.height_facts import caution
 from jointbench.acquisition.formats.tables import Table
+from jointbench.acquisition.records.provenance import Step
 
 # Largest distance of a coordinate from its grid line [step]; readings closer than
 # `_SAME_LINE` of a typical step are the same line.
@@ -113,3 +115,29 @@ def require_single(table: Table, cell: IntArray) -> None:
             f"{named(table.path)}: {table.where(int(second))} repeats the point of "
             f"{table.where(int(first))}; each point of the grid may appear once"
         )
+
+
+def last_line(x: IntArray, y: IntArray) -> tuple[Step, ...]:
+    """Return a caution if the points of a scan end within a line of the map.
+
+    Args:
+        x: grid line of each point along the rows, in the order of the file, shape (n,).
+        y: the same down the columns.
+
+    Returns:
+        One caution, or none: points that were scanned in no lines show nothing.
+    """
+    turns = [np.flatnonzero(np.diff(one)) + 1 for one in (x, y)]
+    fast, turn = (x, turns[1]) if turns[1].size < turns[0].size else (y, turns[0])
+    slow = y if fast is x else x
+    if turn.size == 0 or turn.size != np.unique(slow).size - 1:
+        return ()
+    count, width = fast.size - int(turn[-1]), int(fast.max()) + 1
+    if count == width or (count > 1 and fast[-1] in (0, width - 1)):
+        return ()
+    return (
+        caution(
+            f"the last line of the map ends after {count} of {width} points: if the "
+            "file was cut there, the rest is lost; compare it with the original"
+        ),
+    )

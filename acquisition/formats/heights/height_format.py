@@ -34,6 +34,7 @@ class HeightFile:
         self._data: bytes | None = None
         self._lines: list[str] | None = None
         self._encoding = ""
+        self._half_end = False
 
     @property
     def data(self) -> bytes:
@@ -57,6 +58,8 @@ class HeightFile:
             BadData: it cannot be read, is no text, or does not fit into the memory.
         """
         if self._lines is None:
+            end = self.data[-2:].replace(b"\0", b"")[-1:]
+            self._half_end = end == b"\r" and b"\n" in self.data
             text, self._encoding = decode(self.data, self.path)
             self._data = None  # as large as the file, as is the text
             self._lines = text_lines(text, self.path)
@@ -67,6 +70,12 @@ class HeightFile:
         """Name of the encoding of `lines`."""
         _ = self.lines
         return self._encoding
+
+    @property
+    def half_line_end(self) -> bool:
+        """Whether the text ends between the two characters of a line end."""
+        _ = self.lines
+        return self._half_end
 
 
 @dataclass(frozen=True, slots=True)

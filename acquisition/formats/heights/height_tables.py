@@ -24,7 +24,11 @@ from jointbench.acquisition.formats.columns import (
 )
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.header_units import units_words
-from jointbench.acquisition.formats.heights.grid_lines import grid_axis, require_single
+from jointbench.acquisition.formats.heights.grid_lines import (
+    grid_axis,
+    last_line,
+    require_single,
+)
 from jointbench.acquisition.formats.table_cells import split_row
 from jointbench.acquisition.formats.tables import Table
 from jointbench.acquisition.records.provenance import Provenance, Step, step
@@ -325,5 +329,9 @@ def _areal(
         heights=grid,
         spacing=(spacing["y"], spacing["x"]),
         valid=mask,
-        provenance=(*provenance, step("grid", empty_cells=int(grid.size - cell.size))),
+        provenance=(
+            *provenance,
+            step("grid", empty_cells=int(grid.size - cell.size)),
+            *last_line(axes["x"].index, axes["y"].index),
+        ),
     )

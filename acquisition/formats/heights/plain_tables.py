@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Plain tables of heights as formats: .npy arrays, and texts no other format takes."""
 
-from jointbench.acquisition.formats.heights.height_facts import LONGEST_TABLE
+from dataclasses import replace
+
+from jointbench.acquisition.formats.heights.height_facts import LONGEST_TABLE, caution
 from jointbench.acquisition.formats.heights.height_format import (
     HeightFile,
     HeightFormat,
@@ -11,10 +13,12 @@ from jointbench.acquisition.formats.heights.height_tables import (
     surface_from_table,
 )
 from jointbench.acquisition.formats.tables import (
+    Table,
     is_array_file,
     load_table,
     parse_table,
 )
+from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Surface
 
 
@@ -36,7 +40,25 @@ def _recognise_text(_: HeightFile) -> bool:
 def _read_text(file: HeightFile) -> Surface:
     table = parse_table(file.lines, file.path, file.encoding)
     found = header_columns(table) if file.columns is None else file.columns
-    return surface_from_table(table, found, file.origin, file.label)
+    surface = surface_from_table(table, found, file.origin, file.label)
+    said = _end_of(table, file)
+    return replace(surface, provenance=(*surface.provenance, *said))
+
+
+def _end_of(table: Table, file: HeightFile) -> tuple[Step, ...]:
+    """Return a caution where the text ends as one that was cut does.
+
+    A cut exactly at the end of a line leaves no trace in a table of x and z.
+    """
+    if not (table.open_end or file.half_line_end):
+        return ()
+    lost = "its last height may lack digits and " if table.open_end else ""
+    return (
+        caution(
+            f"no whole line end follows the last row, {table.where(-1)}: if the file "
+            f"was cut there, {lost}rows are lost; compare it with the original"
+        ),
+    )
 
 
 ARRAY_FORMAT = HeightFormat(

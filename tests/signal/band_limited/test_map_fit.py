@@ -7,9 +7,9 @@ from lay_surfaces import Embedded, rms_in_rings
 from jointbench.acquisition.records.surfaces import Areal, all_valid
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import RollOffVerdict
-from jointbench.signal.band_limited.lay_spectrum import LaySpectrum, seen_bins
-from jointbench.signal.band_limited.line_spectrum_of_map import line_of
+from jointbench.signal.band_limited.lay_spectrum import LaySpectrum, line_of
 from jointbench.signal.band_limited.map_sample import map_sample
+from jointbench.signal.band_limited.seen_bins import seen_bins
 from jointbench.signal.band_limited.spectrum_sections import spectrum_sections
 from jointbench.signal.surface.complete_patch import complete_patch
 

@@ -3,6 +3,7 @@
 import machined_surfaces
 import numpy as np
 import pytest
+from lay_surfaces import Embedded
 
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
@@ -37,6 +38,15 @@ def test_two_crossing_directions_are_named():
     kinds = surface_kinds(surface, None)
     assert np.degrees(kinds.directions) == pytest.approx(np.degrees(angles), abs=5)
     assert "honed" in " ".join(kind_lines(kinds))
+
+
+def test_one_lay_is_no_second_direction():
+    """Maps with fewer sectors than directions: empty ones were valleys."""
+    maker = Embedded((96, 96), hurst=0.7, along=20.0, across=10.0, angle=0.4)
+    for seed in range(4):
+        for heights in maker.draw(np.random.default_rng(seed)):
+            surface = Areal("l", 1e-7 * heights, (PITCH, PITCH), all_valid(heights))
+            assert surface_kinds(surface, None).directions == ()
 
 
 def test_plateaus_over_valleys_are_two_processes():

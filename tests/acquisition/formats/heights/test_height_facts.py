@@ -309,3 +309,29 @@ def test_writing_and_reading_a_surfcom_trace_keeps_its_length(tmp_path):
 def test_half_of_the_last_digit_is_read_off_the_print(cell, half):
     """Exponents count."""
     assert half_digit(cell) == pytest.approx(half)
+
+
+def table(path, end="\n", rows=40):
+    """Write a table of x and z whose numbers have as many digits as they need."""
+    lines = [f"{k},{z!r}" for k, z in enumerate((1e6 * HEIGHTS[:rows]).tolist())]
+    path.write_bytes(("\r\n".join(lines) + end).encode())
+    return path
+
+
+def test_a_table_that_ends_in_its_last_row_is_said(tmp_path):
+    """Its last height may lack digits; a whole line end leaves nothing to say."""
+    path = tmp_path / "table.txt"
+    for end, said in (("", "digits"), ("\r", "rows are lost"), ("\r\n", None)):
+        found = cautions(read_surface(table(path, end), columns="x:um,z:um").provenance)
+        assert found == () if said is None else said in found[0]
+
+
+@pytest.mark.parametrize(("points", "said"), [(45, True), (31, True), (40, False)])
+def test_a_map_that_ends_within_a_line_is_said(tmp_path, points, said):
+    """Ten points to a line: 45 end in the fifth, 31 after the first of the fourth."""
+    path = tmp_path / "map.xyz"
+    rows = [f"{k % 10},{k // 10},{z:.4f}" for k, z in enumerate(1e6 * HEIGHTS)]
+    path.write_text("\n".join(rows[:points]) + "\n", encoding="ascii")
+    found = cautions(read_surface(path, columns="x:um,y:um,z:um").provenance)
+    assert bool(found) == said
+    assert not said or "of 10 points" in found[0]

@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: MIT
+"""Spectrum of a model in the bins of a map's sample, as the grid and taper show it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.signal.band_limited.lay_spectrum import LaySpectrum
+from jointbench.signal.band_limited.map_parameters import (
+    ANGLE,
+    BLUR,
+    HURST,
+    RATIO,
+    ROLL_OFF,
+    SKEW,
+)
+from jointbench.signal.band_limited.map_sample import TAPER, MapSample
+from jointbench.signal.fractal.instrument_blur import tip_fall
+from jointbench.signal.surface.line_spectrum import fade
+
+_LAYS = 12
+"""Directions over which densities beyond the images are averaged [-]."""
+_IMAGES = 8
+"""Images of the spectrum next to it [-]; the rest is an integral."""
+_LONG = 9.0
+"""Waves along the sides below which the taper smooths the density [-]."""
+_REACH = 2
+"""Ordinates to each side over which it does [-]."""
+_NODES = (7, 11)
+"""Places along rows and columns between which images are interpolated [-]: within 1e-4
+of their sum."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TakenDensity:
+    """Density of a model at wavenumbers, with the parts that its derivatives share.
+
+    Attributes:
+        model: the surface.
+        u: wavenumber along the lay over the pivot [-], shape (n,).
+        v: the same across it, same shape.
+        along: part of the roll-off's sum along the lay [-], same shape.
+        across: part across it, same shape.
+        rest: 1 and both parts, same shape.
+        fall: ln of the density over the level before the short cut, over 1 + H [-].
+        square: of the wavenumber [rad^2/sample^2], same shape.
+        tip: whether the short cut is a tip's path or a Gaussian.
+        density: after the short cut, same shape.
+    """
+
+    model: LaySpectrum
+    u: FloatArray
+    v: FloatArray
+    along: FloatArray
+    across: FloatArray
+    rest: FloatArray
+    fall: FloatArray
+    square: FloatArray
+    tip: bool
+    density: FloatArray
+
+    def rate(self, parameter: int) -> FloatArray:
+        """Return the derivative of ln density by a parameter of `map_parameters`.
+
+        Args:
+            parameter: its place; level and noise have closed ones of the bins.
+        """
+        if parameter == HURST:
+            return self._by_hurst()
+        if parameter == BLUR:
+            return self._by_blur()
+        return (1 + self.model.hurst) * self._fall_by(parameter)
+
+    def _fall_by(self, parameter: int) -> FloatArray:
+        """Return the derivative of `fall` by roll-off, ratio, angle or skew."""
+        model, rest = self.model, self.rest
+        middle = 1 + model.far * (model.ratio + 1 / model.ratio) / 2
+        if parameter == ROLL_OFF:
+            return 2 * (1 / rest - 1 / middle)
+        if parameter == RATIO:
+            whole = model.far * (model.ratio - 1 / model.ratio) / 2 / middle
+            return whole - (self.along - self.across) / rest
+        first, second = model.powers
+        if parameter == ANGLE:
+            turned = first * _over(self.along, self.u) * self.v
+            turned -= second * _over(self.across, self.v) * self.u
+            return -turned / rest
+        assert parameter == SKEW
+        bent = second**2 * self.across * _log(self.v)
+        bent -= first**2 * self.along * _log(self.u)
+        return -bent / (2 * rest)
+
+    def _by_hurst(self) -> FloatArray:
+        if not (self.tip and self.model.blur > 0):
+            return self.fall
+        # The exponent of a tip's short cut is inverse to H.
+        fall = tip_fall(2 * self.model.hurst)
+        ratio = self.model.blur / fall * self.square
+        by_exponent = ratio / (1 + ratio) - np.log1p(ratio)
+        return self.fall - by_exponent * fall / self.model.hurst
+
+    def _by_blur(self) -> FloatArray:
+        if not self.tip:
+            return -self.square
+        fall = tip_fall(2 * self.model.hurst)
+        return -self.square / (1 + self.model.blur / fall * self.square)
+
+
+def take_density(
+    model: LaySpectrum, x: FloatArray, y: FloatArray, square: FloatArray, *, tip: bool
+) -> TakenDensity:
+    """Return the density of a model after its short cut.
+
+    Args:
+        model: the surface.
+        x: along the rows [rad/sample], shape (n,).
+        y: down the columns [rad/sample], same shape.
+        square: x^2 + y^2, same shape.
+        tip: whether the short cut is a tip's path or a Gaussian.
+    """
+    u, v, along, across = model.parts(x, y)
+    middle = 1 + model.far * (model.ratio + 1 / model.ratio) / 2
+    rest = 1 + along
+    rest += across
+    fall = np.log(middle / rest)
+    log_density = (1 + model.hurst) * fall
+    if model.blur > 0:
+        log_density += model.log_short_cut(square, tip=tip)
+    density = model.level * np.exp(log_density)
+    return TakenDensity(model, u, v, along, across, rest, fall, square, tip, density)
+
+
+def _over(part: FloatArray, wave: FloatArray) -> FloatArray:
+    """Return a power above 1 of a wavenumber over it, 0 where it is 0."""
+    return np.divide(part, wave, out=np.zeros_like(part), where=wave != 0)
+
+
+def _log(wave: FloatArray) -> FloatArray:
+    """Return ln |wave|, 0 where it is 0."""
+    return np.log(np.abs(wave), out=np.zeros_like(wave), where=wave != 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenBins:
+    """Where the density of a model is taken for the bins of a sample.
+
+    All wavenumbers are in one array, which costs a fraction of four: those of the bins,
+    those about each long bin, the images of each node and the disc beyond the images.
+
+    Attributes:
+        sample: the binned spectrum.
+        x: wavenumbers along the rows [rad/sample], shape (n_places,).
+        y: the same down the columns, same shape.
+        square: x^2 + y^2, same shape.
+        long: places of bins of few waves, which the taper smooths, shape (n_long,).
+        weight: of the places about a long bin, shape (n_near,).
+        between: from the images at the nodes to those of the bins, shape
+            (n_bins, n_nodes).
+        passed: share of the power that known filters pass, shape (n_bins,).
+        cell: area of the wavenumbers that the grid resolves [rad^2/sample^2].
+        disc: all further images, for H = 1, over the sum of the densities at the edge
+            of those that are taken one by one [-].
+    """
+
+    sample: MapSample
+    x: FloatArray
+    y: FloatArray
+    square: FloatArray
+    long: IntArray
+    weight: FloatArray
+    between: FloatArray
+    passed: FloatArray
+    cell: float
+    disc: float
+
+    def density(self, model: LaySpectrum) -> FloatArray:
+        """Return the expected spectrum in each bin, with images and noise."""
+        return self.seen(model).density
+
+    def seen(self, model: LaySpectrum, *, least: float = 0.0) -> "SeenDensity":
+        """Return the expected spectrum in each bin, for its derivatives as well.
+
+        Args:
+            model: the surface.
+            least: density that no bin falls below.
+        """
+        tip = self.sample.transfer.tip is not None
+        taken = take_density(model, self.x, self.y, self.square, tip=tip)
+        beyond = float(taken.density[-_LAYS:].sum()) * self.disc / model.hurst
+        total = (self.folded(taken.density) + beyond) * self.passed
+        total += model.noise / self.cell
+        return SeenDensity(self, taken, np.maximum(total, least))
+
+    def folded(self, values: FloatArray) -> FloatArray:
+        """Return values at the places as the grid shows them, the disc left out."""
+        bins, near = self.passed.size, self.weight.size
+        middle = values.size - _LAYS - _IMAGES * self.between.shape[1]
+        seen = values[:bins].copy()
+        seen[self.long] = values[bins:middle].reshape(-1, near) @ self.weight
+        seen += self.between @ values[middle:-_LAYS].reshape(_IMAGES, -1).sum(axis=0)
+        return seen
+
+    def folded_rate(self, taken: TakenDensity, parameter: int) -> FloatArray:
+        """Return the derivative of the surface's spectrum in each bin."""
+        rates = taken.density * taken.rate(parameter)
+        hurst = taken.model.hurst
+        disc = float(rates[-_LAYS:].sum())
+        if parameter == HURST:
+            disc -= float(taken.density[-_LAYS:].sum()) / hurst
+        seen = self.folded(rates) + disc * self.disc / hurst
+        seen *= self.passed
+        return seen
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenDensity:
+    """Expected spectrum of a model in each bin.
+
+    Attributes:
+        bins: where it is taken.
+        taken: density at their places.
+        density: with images and noise, shape (n_bins,).
+    """
+
+    bins: SeenBins
+    taken: TakenDensity
+    density: FloatArray
+
+    def rate(self, parameter: int) -> FloatArray:
+        """Return its derivative by a parameter of the surface or the blur."""
+        return self.bins.folded_rate(self.taken, parameter)
+
+
+def seen_bins(sample: MapSample) -> SeenBins:
+    """Return where the density is taken for a sample."""
+    unit = sample.lowest
+    waves = np.hypot(sample.along / unit[0], sample.down / unit[1])
+    long = waves < _LONG
+    step = np.arange(-_REACH, _REACH + 1)
+    right, up = np.meshgrid(step, step)
+    near = (np.abs(right) + np.abs(up) <= _REACH).ravel()
+    kernel = [_smoothing(n) for n in sample.shape]
+    weight = np.outer(kernel[0], kernel[1]).ravel()[near]
+    images, between = _images(sample)
+    turn = np.pi * np.arange(_LAYS) / _LAYS
+    cell = float(4 * np.pi**2 / sample.stretch)
+    edge = float(np.sqrt((1 + _IMAGES) * cell / np.pi))
+    about = (
+        sample.along[long][:, None] + unit[0] * right.ravel()[near],
+        sample.down[long][:, None] + unit[1] * up.ravel()[near],
+    )
+    x, y = (
+        np.concatenate([own, about[k].ravel(), images[k].T.ravel(), edge * part(turn)])
+        for k, (own, part) in enumerate(((sample.along, np.cos), (sample.down, np.sin)))
+    )
+    passed = sample.transfer.power(np.hypot(sample.along, sample.down))
+    return SeenBins(
+        sample=sample,
+        x=x,
+        y=y,
+        square=x**2 + y**2,
+        long=long.nonzero()[0],
+        weight=weight / weight.sum(),
+        between=between,
+        passed=passed,
+        cell=cell,
+        disc=np.pi * edge**2 / (cell * _LAYS),
+    )
+
+
+def _smoothing(points: int) -> FloatArray:
+    """Return the squared transform of the taper at the nearest ordinates."""
+    step = np.arange(-_REACH, _REACH + 1)
+    phase = np.exp(2j * np.pi * np.outer(step, np.arange(points) / points))
+    square: FloatArray = np.abs(phase @ fade(points, TAPER)) ** 2
+    return square
+
+
+def _images(sample: MapSample) -> tuple[FloatArray, FloatArray]:
+    """Return images of nodes of Chebyshev, and the interpolation between the nodes."""
+    top = np.pi, np.pi / sample.stretch
+    nodes = [np.cos(np.pi * (np.arange(n) + 0.5) / n) for n in _NODES]
+    right, up = np.meshgrid(0.5 * top[0] * (1 + nodes[0]), top[1] * nodes[1])
+    shift = [(k, j) for k in (-1, 0, 1) for j in (-1, 0, 1) if k or j]
+    periods = 2 * np.array(shift) * top
+    images = np.stack(
+        [right.reshape(-1, 1) + periods[:, 0], up.reshape(-1, 1) + periods[:, 1]]
+    )
+    across = _between(nodes[0], 2 * sample.along / top[0] - 1)
+    down = _between(nodes[1], sample.down / top[1])
+    between = (down[:, :, None] * across[:, None, :]).reshape(sample.along.size, -1)
+    return images, between
+
+
+def _between(nodes: FloatArray, places: FloatArray) -> FloatArray:
+    """Return the polynomials that are 1 at one node each, shape (n_places, n_nodes)."""
+    degree = nodes.size - 1
+    known = np.polynomial.chebyshev.chebvander(nodes, degree)
+    asked = np.polynomial.chebyshev.chebvander(places, degree)
+    return np.asarray(np.linalg.solve(known.T, asked.T).T, dtype=np.float64)
