@@ -34,7 +34,7 @@ from jointbench.analysis.structures.reduction.predict_modes import (
 )
 from jointbench.analysis.structures.reduction.predict_response import predict_frf
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
-from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modal_model import ModalModel
 
 # Lines compared and drawn of each FRF, at most.
@@ -76,6 +76,7 @@ class Agreement:
         suspects: outputs and hit points with a doubtful sign, label or axis.
         outputs: labels.
         inputs: labels.
+        kind: of the FRFs.
     """
 
     measured: ModeSet
@@ -91,6 +92,7 @@ class Agreement:
     suspects: tuple[Suspect, ...]
     outputs: tuple[str, ...]
     inputs: tuple[str, ...]
+    kind: FrfKind
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -158,6 +160,7 @@ def compare_structure(
         suspects=find_suspects(measured, coordinates),
         outputs=modes.outputs,
         inputs=modes.inputs,
+        kind=frf.kind,
     )
 
 

@@ -12,6 +12,7 @@ from jointbench.analysis.structures.agreement.paired_modes import (
     pair_mode_sets,
 )
 from jointbench.analysis.structures.agreement.suspect_coordinates import Suspect
+from jointbench.signal.frf.frf import FrfKind
 from jointbench.station.agreement.agreement_json import agreement_json
 from jointbench.station.agreement.agreement_report import write_agreement_report
 from jointbench.station.agreement.agreement_text import pair_rows, sentences
@@ -54,6 +55,7 @@ def agreement() -> Agreement:
         (suspect,),
         ("a1", "a2", "a3"),
         ("1",),
+        FrfKind.MOBILITY,
     )
 
 
@@ -73,6 +75,7 @@ def test_report_and_json_hold_the_same(tmp_path: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert "output a2 has the wrong sign" in text
     assert "MAC of measured and computed modes" in text
+    assert "mobility [m/(N s)]" in text
     content = json.loads(json.dumps(agreement_json(agreement()), allow_nan=False))
     assert content["measured_without_partner_hz"] == [300.0]
     assert content["suspects"][0]["names"] == ["a2"]
