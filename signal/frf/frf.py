@@ -45,6 +45,11 @@ class FrfKind(StrEnum):
         """How many times the displacement is differentiated: 0, 1 or 2."""
         return {"receptance": 0, "mobility": 1, "accelerance": 2}[self.value]
 
+    @property
+    def unit(self) -> str:
+        """Response over force in SI units."""
+        return ("m/N", "m/(N s)", "m/(N s²)")[self.derivatives]
+
 
 KIND_OF_RESPONSE = {
     Quantity.DISPLACEMENT: FrfKind.RECEPTANCE,

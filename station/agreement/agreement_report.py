@@ -16,7 +16,6 @@ from jointbench.station.agreement.agreement_text import (
     sentences,
 )
 from jointbench.station.drawing.palette import MEASURED, MODEL
-from jointbench.station.report.figures.frf_figures import FRF_UNITS
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import (
@@ -165,5 +164,5 @@ def _frf(one: Agreement, i: int, j: int) -> Figure:
             dash="dash",
         ),
     ]
-    height = axis(f"{one.kind.value} [{FRF_UNITS[one.kind]}]", log=True)
+    height = axis(f"{one.kind.value} [{one.kind.unit}]", log=True)
     return figure(curves, axis("frequency [Hz]"), height)

@@ -8,7 +8,7 @@ from jointbench.signal.frf.mode_indicators import cmif
 from jointbench.signal.modal.shape_checks import phase_collinearity
 from jointbench.station.desk.desk_choice import effective
 from jointbench.station.desk.desk_state import DeskState, chosen_rows, evidence
-from jointbench.station.desk.frf_pages import UNITS, Page, drawn_lines
+from jointbench.station.desk.frf_pages import Page, drawn_lines
 from jointbench.station.pipeline.modal_summary import synthesis_error
 from jointbench.station.screen.plot_numbers import numbers
 
@@ -26,7 +26,7 @@ def summary_page(state: DeskState) -> Page:
         "preload_n": subject.preload,
         "outputs": list(frf.outputs),
         "inputs": list(frf.inputs),
-        "unit": UNITS[frf.kind],
+        "unit": frf.kind.unit,
         "averages": frf.averages,
         "estimator": str(detail.get("estimator", "")),
         "band_hz": list(state.chain.result.band),
@@ -94,7 +94,7 @@ def diagram_page(state: DeskState) -> Page:
         "line_hz": numbers(frf.frequency[lines]),
         "mean": numbers(mean),
         "cmif": [numbers(row) for row in cmif(inner)[:_INDICATORS]],
-        "unit": UNITS[frf.kind],
+        "unit": frf.kind.unit,
     }
 
 

@@ -7,16 +7,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.signal.frf.frf import FrfKind
 from jointbench.station.desk.desk_state import DeskState
 from jointbench.station.desk.desk_subject import hit_time
 from jointbench.station.screen.plot_numbers import numbers
 
-UNITS = {
-    FrfKind.RECEPTANCE: "m/N",
-    FrfKind.MOBILITY: "m/(N s)",
-    FrfKind.ACCELERANCE: "m/(N s²)",
-}
 # Lines drawn of a curve: of two in each pixel of a wide screen.
 _MOST_LINES = 3000
 _HALF_TURN = 180.0
@@ -48,7 +42,7 @@ def frf_page(state: DeskState, output: int, column: int) -> Page:
     page = {
         "output": frf.outputs[output],
         "input": frf.inputs[column],
-        "unit": UNITS[frf.kind],
+        "unit": frf.kind.unit,
         "frequency_hz": numbers(frf.frequency[lines]),
         "size": numbers(np.abs(response)),
         "phase_deg": numbers(_phase(response)),

@@ -14,7 +14,6 @@ from jointbench.station.pipeline.modal_summary import (
 from jointbench.station.report.amplitude_section import amplitude_sections
 from jointbench.station.report.checks_section import checks_section, systematic_words
 from jointbench.station.report.figures.frf_figures import (
-    FRF_UNITS,
     frf_figures,
     shown_band,
 )
@@ -111,7 +110,7 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
         axis("frequency [Hz]", range=[float(x[0]), float(x[-1])]),
         axis("model order"),
         yaxis2=axis(
-            f"mean |H| [{FRF_UNITS[frf.kind]}]",
+            f"mean |H| [{frf.kind.unit}]",
             log=True,
             overlaying="y",
             side="right",

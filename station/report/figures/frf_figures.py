@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.signal.frf.frf import Frf
 from jointbench.station.drawing.palette import MEASURED, MODEL
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import Plot
@@ -15,11 +15,6 @@ from jointbench.station.screen.traces import Trace, line
 MOST_POINTS = 1400
 """Points of a line of a small figure; enough to zoom in on one mode."""
 HALF_TURN = 180.0
-FRF_UNITS = {
-    FrfKind.RECEPTANCE: "m/N",
-    FrfKind.MOBILITY: "m/(N s)",
-    FrfKind.ACCELERANCE: "m/(N s²)",
-}
 _HEIGHT = 400
 
 
@@ -75,7 +70,7 @@ def _one_frf(
         traces.append(_below(*thin(frequency, values, MOST_POINTS // 2), "y3"))
         coherence = axis("coherence [-]", domain=[0.0, 0.2], range=[0, 1.05])
         coherence |= {"tickvals": [0, 1]}
-    magnitude = axis(f"|H| [{FRF_UNITS[frf.kind]}]", log=True, domain=[0.45, 1.0])
+    magnitude = axis(f"|H| [{frf.kind.unit}]", log=True, domain=[0.45, 1.0])
     phase = axis(
         "phase [deg]",
         domain=[0.2 if coherence else 0.0, 0.45],
