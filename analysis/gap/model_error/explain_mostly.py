@@ -28,6 +28,7 @@ from jointbench.analysis.gap.model_error.condition_scores import (
 from jointbench.analysis.gap.model_error.free_law import (
     FREE_LAW,
     FRICTION,
+    STIFFNESS,
     fit_free_law,
 )
 from jointbench.analysis.gap.model_error.law_fits import LawFits, fit_laws
@@ -81,7 +82,7 @@ def _judged(scores: "_Scores", policy: Policy) -> PartialExplanation:
         reason = "no force law predicts conditions held out better than none"
         return replace(found, reason=reason)
     doubt = _doubt(found, policy)
-    if found.family == FRICTION and not doubt:
+    if found.family == FRICTION and not doubt and not _beside_springs(found):
         found = _beside_free_law(scores, found)
         doubt = _doubt(found, policy)
     text = f"on conditions held out it removes {100 * lead.share:.0f} % of the power"
@@ -92,6 +93,15 @@ def _judged(scores: "_Scores", policy: Policy) -> PartialExplanation:
         nonlinear=True,
         reason=f"{text}, {doubt or clear}",
     )
+
+
+def _beside_springs(found: PartialExplanation) -> bool:
+    """Return whether a spring of the catalogue is among the rivals at the same place.
+
+    Every family stands in the comparison: by its laws, or where the catalogue has none,
+    by elementary shapes.
+    """
+    return any(r.family == STIFFNESS and r.site == found.site for r in found.rivals)
 
 
 def _doubt(found: PartialExplanation, policy: Policy) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A free spring with a free damper: a rival of every friction law.
+"""A free spring with a free damper: a rival of friction where no spring is known.
 
 Friction softens a joint and dissipates, and the one follows from the other. A softening
 spring beside a damper does both as well, each by a law of its own, and a spring alone
@@ -29,6 +29,8 @@ FREE_LAW = "free spring and damper"
 """Name of this rival; it belongs to no family."""
 FRICTION = "friction"
 """Family whose laws soften a joint and dissipate."""
+STIFFNESS = "stiffness"
+"""Family of springs; where the catalogue has one, that is the rival of friction."""
 POWERS = frozenset(
     {
         "square of the motion",

@@ -105,6 +105,14 @@ def test_a_slider_leads_a_free_spring_and_damper() -> None:
     assert free.standard_errors > 3.0
 
 
+def test_where_the_catalogue_has_a_spring_that_is_the_rival_of_friction() -> None:
+    """No free spring is fitted beside a spring of the catalogue."""
+    found = explained("slider")
+    assert (found.named, found.family) == (True, "friction")
+    assert "stiffness" in {r.family for r in found.rivals}
+    assert FREE_LAW not in {r.rival for r in found.rivals}
+
+
 def test_the_discrepancy_of_made_residuals_is_found() -> None:
     """A common error of 5 % and an own one of 2 % are estimated within a third."""
     campaign = made.made_campaign([], noise=0.01)
