@@ -33,6 +33,9 @@ MOST_BYTES = 512 * 2**20
 _PLAIN_BYTES = 512
 _XML = (".xml", ".rels")
 _MOST_ENTRIES, _MOST_LINES = 1000, 1_000_000
+# Of the XML of a container [bytes]: heights stand beside it, in binary. A reader of XML
+# takes a second of CPU time or more for 2 MB of short elements.
+_LONGEST_XML = 4_000_000
 _NEEDED = 40
 """Of each point: as it is stored, masked, scaled and turned [bytes]."""
 SUFFIXES = frozenset(
@@ -126,6 +129,11 @@ def _require_sane_container(path: Path) -> None:
     # A parsed XML takes some thirty times its length.
     xml = sum(e.file_size for e in entries if e.filename.lower().endswith(_XML))
     require_room(path, 3 * sum(entry.file_size for entry in entries) + 30 * xml)
+    if xml > _LONGEST_XML:
+        raise HostileFile(
+            f"{named(path)} has {xml / 1e6:.0f} MB of XML, a description of a map at "
+            f"most {_LONGEST_XML / 1e6:.0f} MB; export it with binary heights or as text"
+        )
     if len(entries) > _MOST_ENTRIES:
         raise HostileFile(f"{named(path)} holds {len(entries)} files; export it again")
 
