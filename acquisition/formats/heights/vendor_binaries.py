@@ -131,8 +131,9 @@ def _require_sane_container(path: Path) -> None:
     require_room(path, 3 * sum(entry.file_size for entry in entries) + 30 * xml)
     if xml > _LONGEST_XML:
         raise HostileFile(
-            f"{named(path)} has {xml / 1e6:.0f} MB of XML, a description of a map at "
-            f"most {_LONGEST_XML / 1e6:.0f} MB; export it with binary heights or as text"
+            f"{named(path)} has {xml / 1e6:.0f} MB of XML, at most "
+            f"{_LONGEST_XML / 1e6:.0f} MB are read; export it with binary heights or "
+            "as text"
         )
     if len(entries) > _MOST_ENTRIES:
         raise HostileFile(f"{named(path)} holds {len(entries)} files; export it again")
