@@ -19,13 +19,15 @@ from pathlib import Path
 _PACKAGE = "jointbench"
 _LIBRARIES = ("filterpy", "numba", "numpy", "scipy")
 CALLERS = (
+    "acquisition.basics.steady_memory",
     "station.pipeline.chain",
     "station.pipeline.joint_stages",
     "station.pipeline.process_session",
     "station.pipeline.record_codec",
     "station.pipeline.stage_store",
 )
-"""Part of every stage: what calls it and stores its record, without their imports."""
+"""Part of every stage: what calls it, stores its record and returns its memory, without
+their imports."""
 STAGE_MODULES = {
     "hits": ("station.pipeline.judge_again",),
     "kalman": ("signal.kalman.smoothing", "signal.hits.windows"),
