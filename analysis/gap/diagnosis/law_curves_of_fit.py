@@ -16,6 +16,10 @@ from jointbench.analysis.gap.response.law_loops import Loops, harmonic_loops
 from jointbench.analysis.gap.response.link_modes import link_modes
 from jointbench.analysis.gap.response.predict_records import motion, undamped
 
+# Poles with less imaginary part relative to their size are real, by rounding apart: a
+# Maxwell element has one.
+_REAL = 1e-9
+
 _Drawn = tuple[FloatArray, FloatArray, FloatArray]
 """Force of the loops, frequencies and damping ratios of one draw."""
 
@@ -58,7 +62,8 @@ def _curves(
     others = []
     for x in draws:
         terms = split(x, fit.n_base, fit.candidates)
-        others.append(_drawn(bench, x[: fit.n_base], terms, index, amplitude)[1])
+        drawn = _drawn(bench, x[: fit.n_base], terms, index, amplitude)[1]
+        others.append((drawn[0], _rows(drawn[1], own[1]), _rows(drawn[2], own[2])))
     sd = [np.std([drawn[k] for drawn in others], axis=0, ddof=1) for k in range(3)]
     shown = slice(None, None, -DIAGNOSIS.curve_every)
     return LawCurves(
@@ -73,6 +78,14 @@ def _curves(
         damping=own[2],
         damping_sd=sd[2],
     )
+
+
+def _rows(drawn: FloatArray, own: FloatArray) -> FloatArray:
+    """Return the modes of a draw, as many as the fit has; NaN where one is missing."""
+    found = np.full_like(own, np.nan)
+    count = min(drawn.shape[0], own.shape[0])
+    found[:count] = drawn[:count]
+    return found
 
 
 def _largest_motion(bench: LumpedBench, fit: Fit, index: int) -> float:
@@ -123,5 +136,5 @@ def _modes(
     """Return the upper poles at the reference preload, ascending, shape (n_modes,)."""
     conditions = HitConditions(np.ones(1), np.zeros(1))
     modes = link_modes(bench.campaign.model, theta, conditions, [link], actions)
-    upper = modes.poles[modes.poles.imag > 0]
+    upper = modes.poles[modes.poles.imag > _REAL * np.abs(modes.poles)]
     return np.asarray(upper[np.argsort(np.abs(upper))])

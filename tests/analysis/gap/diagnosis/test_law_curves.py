@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Loops, f(a) and zeta(a) of fitted force laws, and their figure."""
 
+from dataclasses import replace
+
 import gap_bench as made
 import numpy as np
 import pytest
@@ -90,3 +92,19 @@ def test_the_figure_has_loops_and_bands_in_three_panels(curves: LawCurves) -> No
     panels = [trace.get("xaxis", "x") for trace in drawn["data"]]
     assert panels.count("x") == 3 * len(curves.motion)
     assert panels.count("x2") == panels.count("x3") == 3 * len(curves.frequency)
+
+
+def test_curves_beside_a_relaxation_of_any_size_have_the_modes_of_the_fit() -> None:
+    """Draws whose relaxation has more or fewer oscillating poles change no shape."""
+    cubic, relaxing = ("cubic_stiffness", [8e15]), ("maxwell", [2e7, 1e-4])
+    laws = [(name, "link:joint", values) for name, values in (cubic, relaxing)]
+    bench = make_bench(made.made_campaign(laws))
+    terms = [made.term_of(bench, *one) for one in laws]
+    problem = make_problem(bench, tuple(t.candidate for t in terms))
+    start = np.concatenate([made.BASE, *(t.coordinates for t in terms)])
+    fit = minimise(problem, start, MIDDLE, iterations=1)
+    slopes, prior = fit.jacobian.copy(), fit.prior.copy()
+    slopes[:, -2:], prior[-2:] = 0.0, 0.25
+    (found,) = law_curves(bench, replace(fit, jacobian=slopes, prior=prior))
+    assert found.frequency.shape == found.frequency_sd.shape
+    assert np.all(found.frequency > 0)
