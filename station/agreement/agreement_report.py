@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The report on a measured structure beside its model: MAC, differences, FRFs."""
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from jointbench.station.agreement.agreement_text import (
     sentences,
 )
 from jointbench.station.drawing.palette import MEASURED, MODEL
+from jointbench.station.joints.state_values import label_parts
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import (
@@ -62,8 +62,8 @@ def write_agreement_report(
 
 def _heading(label: str) -> str:
     """Return the label of a state, ``session@25000N``, in words."""
-    found = re.fullmatch(r"(.+)@([0-9.e+]+)N", label)
-    return f"{found[1]} at {engineering(float(found[2]), 'N')}" if found else label
+    name, preload = label_parts(label)
+    return name if preload is None else f"{name} at {engineering(preload, 'N')}"
 
 
 def _tiles(one: Agreement) -> list[Tile]:

@@ -37,6 +37,7 @@ from jointbench.station.joints.state_values import (
     IdentifiedFile,
     StateValues,
     read_identified,
+    state_labels,
     state_values,
 )
 from jointbench.station.joints.structure_model import (
@@ -127,7 +128,7 @@ class _Known:
 
 def _state_of(file: IdentifiedFile, label: str, count: int) -> _Known:
     """Return the label of a measured state in the file; None where it has none."""
-    labels = {name.rpartition(":")[0] for name in file.parameters if ":" in name}
+    labels = state_labels(file)
     return _Known(file, label if label in labels or (count > 1 and labels) else None)
 
 

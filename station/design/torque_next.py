@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The next torque of a measured plan: which ones there are, and what each buys."""
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -34,6 +33,7 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.station.design.design_records import DesignRequest, NextTorque
 from jointbench.station.joints.state_values import (
     IdentifiedFile,
+    label_parts,
     read_identified,
     state_labels,
     state_values,
@@ -45,7 +45,6 @@ from jointbench.station.joints.structure_tables import DesignTable
 _BEYOND = (0.5, 2.0)
 # Torques nearer than this are the same [-].
 _SAME = 0.01
-_PRELOAD = re.compile(r"@([0-9.eE+-]+)N$")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -149,7 +148,7 @@ def _torques(
     contact = settings.contact
 
     def stated(label: str) -> float | None:
-        preload = _preload(label)
+        preload = label_parts(label)[1]
         if label in table.states or preload is None or contact is None:
             return table.states.get(label)
         return contact.torque(preload)
@@ -157,20 +156,14 @@ def _torques(
     own = stated(chosen) or table.torque
     if own is None:
         return {}
-    found, base = {chosen: own}, _preload(chosen)
+    found, base = {chosen: own}, label_parts(chosen)[1]
     for label in state_labels(file):
-        torque, preload = stated(label), _preload(label)
+        torque, preload = stated(label), label_parts(label)[1]
         if torque is None and base is not None and preload is not None:
             torque = own * preload / base
         if torque is not None and label != chosen:
             found[label] = torque
     return found
-
-
-def _preload(label: str) -> float | None:
-    """Return the preload that a label ends with [N]."""
-    found = _PRELOAD.search(label)
-    return None if found is None else float(found.group(1))
 
 
 def torque_options(known: Iterable[float], allowed: Iterable[float]) -> list[float]:

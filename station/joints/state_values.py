@@ -2,6 +2,7 @@
 """The values of joints from the JSON of ``identify`` and from the model file."""
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -180,6 +181,16 @@ def state_labels(file: IdentifiedFile) -> list[str]:
     """
     names = file.parameters
     return list(dict.fromkeys(n.rpartition(":")[0] for n in names if ":" in n))
+
+
+def label_parts(label: str) -> tuple[str, float | None]:
+    """Return the name in the label of a state, ``session@25000N``, and its preload [N].
+
+    Args:
+        label: of a state; without a preload it is the name.
+    """
+    found = re.fullmatch(r"(.*)@([0-9.eE+-]+)N", label)
+    return (found[1], float(found[2])) if found else (label, None)
 
 
 def _label(file: IdentifiedFile, label: str | None) -> str:
