@@ -44,6 +44,7 @@ NO_SETTINGS = {
     "FLOOR": "guard against a division by zero",
     "_LEAST": "guard against the logarithm of zero",
     "ENDLESS": "mark of a surface without roll-off",
+    "_REAL": "guard against an imaginary part that is rounding",
     "_FOURTH": "cumulant of second differences, exact",
     "_THIRD": "the same",
     "_FORMS": "degrees of the polynomials of a form",
