@@ -91,6 +91,7 @@ class Examined:
         remarks: what was left out, and why, a line each.
         plan: places of a bolted structure, or None.
         sections: further sections of the report, after the verdict.
+        simulated: whether a session was.
     """
 
     title: str
@@ -100,6 +101,7 @@ class Examined:
     remarks: tuple[str, ...] = ()
     plan: StructurePlan | None = None
     sections: tuple[Section, ...] = ()
+    simulated: bool = False
 
 
 def examine(
@@ -349,7 +351,12 @@ def _examine_sessions(
         curves=curves,
         progress=progress,
     )
-    return Examined(title, found, remarks=(*remarks, *left_out))
+    return Examined(
+        title,
+        found,
+        remarks=(*remarks, *left_out),
+        simulated=any(session.simulated for session in sessions),
+    )
 
 
 def _refuse_curves(wanted: GapRequest) -> None:
