@@ -149,7 +149,11 @@ def _both(likelihood: SpectralLikelihood, near: FloatArray | None = None) -> _Fo
 def _models(
     likelihood: SpectralLikelihood, starts: list[FloatArray], free: BoolArray
 ) -> tuple[Maximum, ...]:
-    """Return the maxima without blur and noise, with either, and with both."""
+    """Return the maxima without blur and noise, with either, and with both.
+
+    A blur or noise whose likeliest value is nothing counts as well: it may still be
+    there, and draws without it would leave its effect on curvature and H out.
+    """
     found: list[Maximum] = []
     # A stated tip acts on every trace.
     tip = likelihood.sample.transfer.tip is not None
@@ -162,9 +166,7 @@ def _models(
         best = max(tried, key=lambda one: one.value)
         if not found:
             starts = [np.append(best.parameters[:3], _SMALL)]
-        # A blur or noise of nothing is the model without it.
-        if not found or np.all(best.parameters[mask & ~_SURFACE] > 0):
-            found.append(best)
+        found.append(best)
     return tuple(found)
 
 
