@@ -40,7 +40,7 @@ from jointbench.signal.band_limited.roughness_moments import (
 )
 from jointbench.signal.band_limited.scoring_search import Maximum, maximise
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
-from jointbench.signal.band_limited.tip_width import tip_surprise
+from jointbench.signal.band_limited.tip_width import tip_deviation, tip_surprise
 from jointbench.signal.band_limited.weighted_draws import WeightedDraws, draw
 
 _STARTS = (0.02, 0.3)
@@ -306,7 +306,14 @@ def _tip(found: _Found) -> float:
     bare = replace(found.likelihood, heeds_tip=False)
     mask = np.diag(found.best.information) > 0
     free = maximise(bare, found.best.parameters, mask)
-    return tip_surprise(bare.model(free.parameters), bare.sample)
+    covariance = np.zeros_like(free.information)
+    part = free.information[np.ix_(mask, mask)]
+    covariance[np.ix_(mask, mask)] = np.linalg.pinv(part, hermitian=True)
+
+    def surprise(at: FloatArray) -> float:
+        return tip_surprise(bare.model(at), bare.sample)
+
+    return tip_deviation(surprise, free.parameters, covariance)
 
 
 def _beyond(found: _Found) -> float:
