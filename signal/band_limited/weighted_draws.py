@@ -59,7 +59,7 @@ def draw(likelihood: SpectralLikelihood, maxima: Sequence[Maximum]) -> WeightedD
     A model without blur or noise has the weight that Akaike's criterion gives it: with
     every parameter free, a flat prior on a blur and a noise that are not there would
     move H. Where its likeliest blur or noise is nothing, the weight is in proportion
-    to what a likelihood that goes on below nothing would have above it.
+    to what a likelihood that continues below nothing would have above it.
 
     Source:
         Weights of models: Buckland et al., Biometrics 53 (1997) 603.

@@ -145,15 +145,15 @@ def _steps(
                 k += 1
                 here = -((b - a) // 2)
                 while here < points - b:
-                    # Distance from the places ahead and behind where c is not smooth.
-                    ahead, behind = points, points
+                    # Distance from the next and the last place where c is not smooth.
+                    ahead, passed = points, points
                     if here <= 0:
                         ahead = -here
                     elif here <= a:
-                        ahead, behind = a - here, here
+                        ahead, passed = a - here, here
                     else:
-                        behind = here - a
-                    size = max(step, _STEP * min(ahead, behind))
+                        passed = here - a
+                    size = max(step, _STEP * min(ahead, passed))
                     size = min(size, ahead, points - b - here)
                     middle = 2 * here == a - b  # alone its own mirror image
                     wide = 1 if middle or size < 3 else (int(size) - 1) | 1
