@@ -30,7 +30,6 @@ from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.contact_section import contact_sections
 from jointbench.station.gap.frf_levels import refuse_frfs
-from jointbench.station.gap.joint_state_files import names_states, read_joints
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
 from jointbench.station.gap.measured_curves import (
@@ -47,6 +46,7 @@ from jointbench.station.gap.structure_files import examine_structure, nominal_be
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
 from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.gap.surface_gap_section import surface_gap_sections
+from jointbench.station.joint_states.joint_state_files import names_states, read_joints
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters

@@ -8,7 +8,7 @@ import pytest
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.station.gap.gap_inputs import GapRequest, examine
-from jointbench.station.gap.joint_state_files import names_states, read_joint
+from jointbench.station.joint_states.joint_state_files import names_states, read_joint
 
 HEAD = """
 [joint]
