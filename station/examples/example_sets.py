@@ -76,6 +76,10 @@ EXAMPLES = (
         ("joint-stiffness.toml", "joint-stiffness.csv"),
     ),
     ExampleSet(
+        "loops",
+        "force over displacement of a joint at four torques: stiffness and losses",
+    ),
+    ExampleSet(
         "pressed",
         "two plates under four bolts: the pressure between them",
         ("pressed-plates.toml",),

@@ -32,6 +32,7 @@ from jointbench.station.gap.contact_section import contact_sections
 from jointbench.station.gap.frf_levels import refuse_frfs
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
+from jointbench.station.gap.loop_section import loop_sections
 from jointbench.station.gap.measured_curves import (
     curves_of_campaign,
     curves_of_recordings,
@@ -46,7 +47,11 @@ from jointbench.station.gap.structure_files import examine_structure, nominal_be
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
 from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.gap.surface_gap_section import surface_gap_sections
-from jointbench.station.joint_states.joint_state_files import names_states, read_joints
+from jointbench.station.joint_states.joint_state_files import (
+    loops_of,
+    names_states,
+    read_joints,
+)
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
@@ -225,7 +230,13 @@ def _examine_joint(
     progress("reading the states")
     data, law = read_joints(paths)
     done = diagnose_contact(data, law, without=wanted.without, progress=progress)
-    return Examined(data.name, done.found, sections=contact_sections(done))
+    loops = loops_of(paths)
+    return Examined(
+        data.name,
+        done.found,
+        remarks=tuple(one.words for one in loops),
+        sections=(*contact_sections(done), *loop_sections(loops)),
+    )
 
 
 def _examine_surface(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read a loop of force over displacement from a CSV file."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -72,11 +73,18 @@ def _numbers(
                 "columns; write commas between cells, and decimals with a point"
             )
         for row, at in enumerate(places):
-            try:
-                found[row, number - 1] = float(cells[at])
-            except ValueError as error:
+            found[row, number - 1] = _number(cells[at])
+            if not math.isfinite(found[row, number - 1]):
                 raise BadData(
                     f"{named(path)}, row {number}: {cells[at].strip()!r} is no "
                     "number; leave lines out that were not measured"
-                ) from error
+                )
     return found
+
+
+def _number(cell: str) -> float:
+    """Return the number in a cell; NaN for anything else."""
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan

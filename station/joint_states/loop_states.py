@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """States of a joint file in the form that the bench takes: loops become values."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.quoting import named
@@ -56,7 +55,7 @@ class StateLoop:
             f"{loss}"
         )
         if losses and left:
-            words += f"; at {left} amplitudes noise hides the loss"
+            words += f"; noise hides the loss of {left}"
         return words
 
 
@@ -138,7 +137,7 @@ def _values(one: StateLoop, number: int) -> list[SetState]:
     slip = _NO_SLIP * min(level.force for level in found.levels)
     stiff = {
         "kt": (found.stiffness, False),
-        "kt_sd": float(np.hypot(found.stiffness_sd, common)),
+        "kt_sd": math.hypot(found.stiffness_sd, common),
         "shear": slip,
     }
     rows = [stiff] + [
@@ -154,7 +153,7 @@ def _damped(level: LoopLevel, state: JointStateTable) -> dict[str, object]:
     frequency = state.frequency or 1.0
     return {
         "ct": (level.damping(frequency), False),
-        "ct_sd": float(np.hypot(level.energy_sd, state.loop_sd)),
+        "ct_sd": math.hypot(level.energy_sd, state.loop_loss_sd, state.loop_sd),
         "shear": level.force,
     }
 

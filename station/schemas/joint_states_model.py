@@ -185,6 +185,7 @@ class JointStateTable(StrictTable):
     )
     loop: str | None = None
     loop_sd: Spread = 0.01
+    loop_loss_sd: Spread = 0.05
     identified: str | None = None
     parameters: dict[Literal["kn", "kt", "kt2", "kr", "cn", "ct"], str] = Field(
         default_factory=dict

@@ -88,6 +88,13 @@ class JointStates:
         return self.setting
 
     @property
+    def several_forces(self) -> bool:
+        """Whether tangential forces of different size act in one setting."""
+        known = np.isfinite(self.shear)
+        pairs = np.column_stack([self.settings, self.shear])[known]
+        return len(np.unique(pairs, axis=0)) > len(np.unique(pairs[:, 0]))
+
+    @property
     def by_torque(self) -> BoolArray:
         """States whose preload follows from the torque, shape (n_states,)."""
         return np.isnan(self.preload)
