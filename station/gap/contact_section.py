@@ -14,7 +14,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     UNITS,
     ContactQuantity,
 )
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import ContactDiagnosis
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import ContactDiagnosis
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.station.drawing.palette import LAW, MEASURED, MODEL, REFUSED

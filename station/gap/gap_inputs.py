@@ -15,7 +15,6 @@ from jointbench.analysis.gap.catalogue.catalogue import (
     with_real_joints,
 )
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
 from jointbench.analysis.gap.diagnosis.single_record import (
@@ -24,6 +23,7 @@ from jointbench.analysis.gap.diagnosis.single_record import (
 )
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.intake.read_hit_campaign import HIT_SCHEMA
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.station.files.input_files import is_session_name, refuse_twice

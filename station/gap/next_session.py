@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
     ContactDiagnosis,
     diagnose_contact,
 )

@@ -24,13 +24,13 @@ from jointbench.analysis.gap.contact_bench.contact_bench import (
     ContactBench,
     make_contact_bench,
 )
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
     ContactDiagnosis,
     conclude_contact,
     too_few,
 )
-from jointbench.analysis.gap.diagnosis.contact_search import search_contact
-from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.law_diagnosis.contact_search import search_contact
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 
 Progress = Callable[[str], None]
