@@ -77,7 +77,7 @@ EXAMPLES = (
     ),
     ExampleSet(
         "loops",
-        "force over displacement of a joint at four torques: stiffness and losses",
+        "loops of force and displacement of a joint, and the program that makes them",
     ),
     ExampleSet(
         "pressed",

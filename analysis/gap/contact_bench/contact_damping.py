@@ -20,10 +20,6 @@ from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Effect, Site
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
 
 _TORQUE = "add torques over a wider range"
-_LEAST_SLIP = 1e-3
-"""Share of the sliding force below which the loss is in proportion to it."""
-_NEAR_ONE = 1e-6
-"""Distance of an exponent from 1 within which its integral is a logarithm."""
 _DIRECTIONS = (
     (ContactQuantity.NORMAL_DAMPING, "normal"),
     (ContactQuantity.TANGENTIAL_DAMPING, "tangential"),
@@ -159,8 +155,8 @@ def _loss_of_cycles(small: FloatArray, exponent: float) -> FloatArray:
     for small q the loss is 2 m q/(3 pi).
     """
     slip = 1.5 * np.pi * small / exponent
-    q = np.clip(slip, _LEAST_SLIP, CONTACT.most_ratio)
-    m = exponent if abs(exponent - 1.0) > _NEAR_ONE else 1.0 - _NEAR_ONE
+    q = np.clip(slip, CONTACT.least_slip, CONTACT.most_ratio)
+    m = exponent if abs(exponent - 1.0) > CONTACT.near_one else 1.0 - CONTACT.near_one
     left = np.log1p(-q)
     way = -np.expm1((1.0 - m) * left) / (1.0 - m)
     work = way + np.expm1((2.0 - m) * left) / (2.0 - m)

@@ -76,6 +76,12 @@ class ContactBenchSettings:
     slip_exponent_sd: float = numerical(
         0.5, "-", "prior sd of its logarithm", "1/3 and 1 within about one sd"
     )
+    least_slip: float = numerical(
+        1e-3, "-", "share of the sliding force below which the loss grows with it"
+    )
+    near_one: float = numerical(
+        1e-6, "-", "distance of an exponent from 1 within which its integral is a log"
+    )
     flattening_error: float = decision(
         0.06,
         "of the excess",

@@ -46,7 +46,7 @@ class JointStates:
         shear: amplitude of the tangential force during the measurement [N], or NaN.
         frequency: of the vibration that gives the damping [Hz], or NaN.
         setting: number of the setting of the preload that a state belongs to, from 0
-            without gaps; None where the preload is set anew for every state.
+            without gaps; None where the preload is set for every state.
     """
 
     torque: FloatArray

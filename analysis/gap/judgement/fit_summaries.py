@@ -17,14 +17,14 @@ def labels_of_fit(fit: Fit) -> tuple[str, ...]:
 
 
 def ranked_fits(
-    bench: Bench, fits: Sequence[Fit], misfit: Callable[[Fit], float]
+    bench: Bench, fits: Sequence[Fit], over_dof: Callable[[Fit], float]
 ) -> tuple[Ranked, ...]:
     """Return fits by score, the best first.
 
     Args:
         bench: of the fits.
         fits: with the base.
-        misfit: what a fit leaves, over its degrees of freedom.
+        over_dof: chi2 of a fit over its degrees of freedom.
     """
     rows = sorted(fits, key=lambda f: score(bench, f))
     first = score(bench, rows[0])
@@ -33,7 +33,7 @@ def ranked_fits(
             labels_of_fit(f),
             score(bench, f),
             score(bench, f) - first,
-            misfit(f),
+            over_dof(f),
             largest_deviation(f),
         )
         for f in rows

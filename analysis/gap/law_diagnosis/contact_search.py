@@ -16,7 +16,7 @@ from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
-from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawLimits, accept_law
+from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawCriteria, accept_law
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -26,7 +26,7 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-_LIMITS = LawLimits(
+_LIMITS = LawCriteria(
     null_chance=CONTACT.null_chance,
     fit_chance=CONTACT.fit_chance,
     null_factor=CONTACT.null_factor,

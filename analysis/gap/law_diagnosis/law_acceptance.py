@@ -19,7 +19,7 @@ from jointbench.analysis.gap.search.screening import Screening
 
 
 @dataclass(frozen=True, slots=True)
-class LawLimits:
+class LawCriteria:
     """Limits of a bench, and its words.
 
     Attributes:
@@ -46,7 +46,7 @@ def accept_law(
     fit: Fit,
     base: Fit,
     left: Screening,
-    limits: LawLimits,
+    limits: LawCriteria,
     *,
     model: float,
 ) -> Acceptance:

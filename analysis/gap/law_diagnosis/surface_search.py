@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
-from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawLimits, accept_law
+from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawCriteria, accept_law
 from jointbench.analysis.gap.model.effect import (
     Candidate,
     labels_of,
@@ -26,7 +26,7 @@ from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.surface_bench.surface_bench import SurfaceBench
 from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
-_LIMITS = LawLimits(
+_LIMITS = LawCriteria(
     null_chance=SURFACE.null_chance,
     fit_chance=SURFACE.fit_chance,
     null_factor=SURFACE.null_factor,

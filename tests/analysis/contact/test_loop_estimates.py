@@ -81,10 +81,10 @@ def test_an_elastic_slider_dissipates_its_parallelogram() -> None:
 
 
 def test_intervals_hold_under_noise_on_both_channels() -> None:
-    """60 records at two amplitudes: pulls of stiffness and energy have an sd near 1."""
+    """60 records at two amplitudes: errors over their sd have an sd near 1."""
     place, force = cycled(mindlin, [300.0, 900.0], samples=120)
     exact = estimate_loop(JointLoop(place, force))
-    pulls = []
+    errors = []
     for seed in range(60):
         random = np.random.default_rng(seed)
         noisy = estimate_loop(
@@ -96,8 +96,8 @@ def test_intervals_hold_under_noise_on_both_channels() -> None:
         own = [np.log(noisy.stiffness / STIFFNESS) / noisy.stiffness_sd]
         for level, known in zip(noisy.levels, exact.levels, strict=True):
             own.append((level.energy / known.energy - 1.0) / level.energy_sd)
-        pulls.append(own)
-    spread = np.sqrt(np.mean(np.square(pulls), axis=0))
+        errors.append(own)
+    spread = np.sqrt(np.mean(np.square(errors), axis=0))
     # The larger of noise and scatter is stated: an sd below 1 is expected.
     assert np.all((spread > 0.6) & (spread < 1.3))
 

@@ -1,12 +1,15 @@
 """Joints over their preload from TOML, tables and identifications; the command."""
 
 import json
+import runpy
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.station.examples.example_sets import write_example
 from jointbench.station.gap.gap_inputs import GapRequest, examine
 from jointbench.station.joint_states.joint_state_files import (
     loops_of,
@@ -143,13 +146,17 @@ def test_options_of_hits_do_not_apply_to_a_joint_file(tmp_path: Path) -> None:
         examine([str(path)], GapRequest(preload=1.0), progress=lambda line: None)
 
 
-LOOPS = EXAMPLE.parent / "loops"
+@pytest.fixture(scope="module")
+def loops(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the example of loops, and make its files."""
+    folder = write_example("loops", tmp_path_factory.mktemp("example") / "loops")
+    runpy.run_path(str(folder / "rough_loops.py"))["write_loops"](folder)
+    return folder
 
 
-def _with_loop(folder: Path, state: str, csv: str | None = None) -> Path:
+def _with_loop(folder: Path, loops: Path, state: str) -> Path:
     """Return a joint file with one state beside those of `STATES`, and its loop."""
-    text = csv or (LOOPS / "loop-02.csv").read_text(encoding="utf-8")
-    (folder / "loop.csv").write_text(text, encoding="utf-8")
+    shutil.copy(loops / "loop-02.csv", folder / "loop.csv")
     plain = STATES.replace(
         'cn = "400 N s/m"\n', 'cn = "400 N s/m"\nfrequency = "9 Hz"\n'
     )
@@ -157,10 +164,12 @@ def _with_loop(folder: Path, state: str, csv: str | None = None) -> Path:
     return _written(folder, f"{HEAD}{plain}\n[[states]]\n{state}\n")
 
 
-def test_a_loop_is_stiffness_and_damping_of_one_setting(tmp_path: Path) -> None:
+def test_a_loop_is_stiffness_and_damping_of_one_setting(
+    tmp_path: Path, loops: Path
+) -> None:
     """kt, then ct by amplitude; their calibration is common to them."""
     state = 'torque = "9 N m"\nkn = "2e9 N/m"\nloop = "loop.csv"\nloop_sd = "2 %"\n'
-    path = _with_loop(tmp_path, state + 'frequency = "0.1 Hz"')
+    path = _with_loop(tmp_path, loops, state + 'frequency = "0.1 Hz"')
     data, _ = read_joint(path)
     rows, states = data.rows, data.states
     (loop,) = loops_of([path])
@@ -192,19 +201,19 @@ def test_a_loop_is_stiffness_and_damping_of_one_setting(tmp_path: Path) -> None:
     ],
 )
 def test_states_with_a_loop_that_cannot_be_used_are_one_line(
-    tmp_path: Path, state: str, words: str
+    tmp_path: Path, loops: Path, state: str, words: str
 ) -> None:
     """What is wrong, and what to write."""
-    path = _with_loop(tmp_path, f'torque = "9 N m"\n{state}')
+    path = _with_loop(tmp_path, loops, f'torque = "9 N m"\n{state}')
     with pytest.raises(BadData, match=words) as caught:
         read_joint(path)
     assert "\n" not in str(caught.value)
 
 
-def test_damping_beside_a_loop_needs_its_frequency(tmp_path: Path) -> None:
+def test_damping_beside_a_loop_needs_its_frequency(tmp_path: Path, loops: Path) -> None:
     """Slow cycles and vibrations damp by different coefficients."""
     state = 'torque = "9 N m"\nloop = "loop.csv"\nfrequency = "0.1 Hz"'
-    path = _with_loop(tmp_path, state)
+    path = _with_loop(tmp_path, loops, state)
     text = path.read_text(encoding="utf-8").replace('frequency = "9 Hz"', "")
     path.write_text(text, encoding="utf-8")
     with pytest.raises(BadData, match="state 1 has damping without its frequency"):
@@ -257,9 +266,11 @@ def test_values_of_one_identification_have_its_correlation(tmp_path: Path) -> No
         read_joint(path)
 
 
-def test_the_example_of_loops_names_micro_slip_and_draws_its_loops() -> None:
+def test_the_example_of_loops_names_micro_slip_and_draws_its_loops(
+    loops: Path,
+) -> None:
     """Losses that grow with the force are those of friction."""
-    path = str(LOOPS / "joint-loops.toml")
+    path = str(loops / "joint-loops.toml")
     done = examine([path], GapRequest(), progress=lambda line: None)
     assert [e.name for e in done.found.effects] == ["microslip_damping"]
     assert [s.anchor for s in done.sections] == ["joint", "held-out", "loops"]
