@@ -65,7 +65,7 @@ def chain_sections(done: ExaminedChain) -> tuple[Section, ...]:
         Section("links", "Where the disagreement enters", (tests,)),
         Section("causes", "Causes at the joint", _causes(done)),
         Section("moved", "Every later quantity", _moved(done)),
-        *(contact_sections(found.contact) if structure_holds(found.chain) else ()),
+        *(contact_sections(found.joint) if structure_holds(found.chain) else ()),
     )
 
 
