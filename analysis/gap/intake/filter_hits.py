@@ -17,8 +17,11 @@ from jointbench.analysis.gap.intake.raw_hits import (
     make_filter,
     quieted,
 )
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords, RejectedHit
-from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.hit_campaign import (
+    HitRecords,
+    RejectedHit,
+)
+from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 
 
 @dataclass(frozen=True, slots=True, eq=False)

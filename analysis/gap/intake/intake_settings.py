@@ -184,6 +184,9 @@ class HitSettings:
         64, "samples", "shortest quiet start: offset, hum and noise come from it"
     )
     most_joints: int = numerical(64, "points", "most bolts or feet that are read")
+    most_nodes: int = numerical(
+        200_000, "nodes", "most nodes of the surface of a body that are read"
+    )
     most_modes: int = numerical(500, "modes", "most modes of a body that are read")
 
 

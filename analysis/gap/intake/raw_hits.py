@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.intake.intake_settings import HITS
-from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,34 +20,34 @@ from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
-from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
-from jointbench.analysis.gap.structure_bench.hit_campaign import (
-    HitCampaign,
-    record_blocks,
-)
-from jointbench.analysis.gap.structure_bench.hit_frames import (
-    HitFrame,
-    hit_frame,
-    window_count,
-)
-from jointbench.analysis.gap.structure_bench.hit_response import (
-    HitModel,
-    direction_rows,
-    hit_model,
-)
-from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
-from jointbench.analysis.gap.structure_bench.landing import landing_weights
 from jointbench.analysis.gap.structure_bench.law_slopes import LawSlopes
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_state,
 )
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_bench.whitening import (
     HitWhitening,
     directions_found,
     whitening_of,
 )
+from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_response.hit_campaign import (
+    HitCampaign,
+    record_blocks,
+)
+from jointbench.analysis.gap.structure_response.hit_frames import (
+    HitFrame,
+    hit_frame,
+    window_count,
+)
+from jointbench.analysis.gap.structure_response.hit_response import (
+    HitModel,
+    direction_rows,
+    hit_model,
+)
+from jointbench.analysis.gap.structure_response.joint_state import JointState, state_of
+from jointbench.analysis.gap.structure_response.landing import landing_weights
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,7 +9,7 @@ products of three force directions with the shape and its two derivatives.
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitPoint
+from jointbench.analysis.gap.structure_response.jointed_bodies import HitPoint
 
 COLUMNS = 9
 """Columns of a hit point."""

@@ -7,12 +7,12 @@ from enum import StrEnum
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     DIRECTIONS,
     JointedBodies,
     NominalBench,
 )
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 class BaseName(StrEnum):

@@ -7,8 +7,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.analysis.gap.residuals.fit_records import Blocks
-from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     JointedBodies,
     NominalBench,
 )
