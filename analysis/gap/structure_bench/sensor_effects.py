@@ -226,12 +226,13 @@ SENSOR_EFFECTS: tuple[StructureEffect, ...] = (
         Effect(
             "wrong_hit_point",
             "sensor",
-            _POSITION,
+            (replace(_POSITION[0], far=()), _AZIMUTH),
             "Ewins 2000, Modal Testing, ch. 3, point of excitation",
             report=_offset_found,
         ),
         movable_points,
         _move_point,
+        aimed=True,
     ),
 )
 """Faults of sensors, cables and hammer points."""

@@ -46,7 +46,10 @@ from jointbench.analysis.gap.structure_response.hit_response import (
     hit_model,
 )
 from jointbench.analysis.gap.structure_response.joint_state import JointState, state_of
-from jointbench.analysis.gap.structure_response.landing import landing_weights
+from jointbench.analysis.gap.structure_response.landing import (
+    landing_weights,
+    mean_landing,
+)
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -155,8 +158,23 @@ class StructureBench:
         return 0
 
     def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
-        """No effect starts from peaks of the residual."""
-        return []
+        """Return starts of a mark where the hits of its point landed, if far from it.
+
+        Aim and tilt of each hit take over most of a common offset, so directed tests
+        show little of it; the mean of the offsets found shows it instead.
+        """
+        known = {e.effect.name for e in self.entries if e.aimed}
+        if candidate.effect.name not in known:
+            return []
+        count = fit.residual.size // int(np.prod(self.blocks.shape[:2]))
+        window = count / self.campaign.hits.sample_rate
+        landing, _ = self.landed(fit.base, fit.terms, window)
+        offset = mean_landing(self.campaign, candidate.site.name, landing)
+        distance = float(np.linalg.norm(offset))
+        if distance < STRUCTURE.mark_sd * self.campaign.nominal.aim_sd:
+            return []
+        azimuth = float(np.arctan2(offset[1], offset[0]))
+        return [np.array([size * distance, azimuth]) for size in STRUCTURE.mark_starts]
 
     def scale(self, word: str) -> float:
         """Return the scale of a word [SI]."""

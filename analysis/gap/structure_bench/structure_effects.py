@@ -26,6 +26,8 @@ class StructureEffect:
         change: adds it to a state of the model.
         nonlinear: True if it is integrated in time.
         always: True if fits start from it whatever the directed tests find.
+        aimed: True if it moves the mark of a point: fits also start at the mean place
+            where the hits of the point landed.
     """
 
     effect: Effect
@@ -33,6 +35,7 @@ class StructureEffect:
     change: Change
     nonlinear: bool = False
     always: bool = False
+    aimed: bool = False
 
 
 def one_parameter(

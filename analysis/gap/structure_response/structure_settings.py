@@ -282,6 +282,18 @@ class StructureSettings:
         "singular value below which terms of the polynomial depend on each other",
         "square root of rounding",
     )
+    mark_sd: float = numerical(
+        2.5,
+        "sd of the aim",
+        "mean offset of the hits of a point from which its mark may be misplaced",
+        "the mean of a dozen hits has a third of the sd of one",
+    )
+    mark_starts: tuple[float, ...] = numerical(
+        (1.0, 1.5, 2.5),
+        "of the mean offset",
+        "distances of the mark from which fits start",
+        "the prior of the aim draws the offsets found to the mark",
+    )
     constraint_rank: float = numerical(
         1e-9,
         "of the largest",

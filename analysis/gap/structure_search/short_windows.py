@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, may_join, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -90,11 +91,8 @@ def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candid
     fill all places.
     """
     always = {e.effect.name for e in few.entries if e.always}
-    chosen = [
-        c
-        for c in few.candidates
-        if c.effect.name in always and may_join(c, near.candidates)
-    ]
+    free = [c for c in few.candidates if may_join(c, near.candidates)]
+    chosen = [c for c in free if c.effect.name in always or few.hints(near, c)]
     others: list[Candidate] = []
     for c in screening.leaders(len(few.candidates)):
         same = sum(c.effect.name == one.effect.name for one in others)
@@ -109,12 +107,18 @@ def _starts(
     """Return starts of a candidate, best first: along its tests, and far ones."""
     problem = make_problem(few, (*near.candidates, candidate))
     starts = [along(problem, near, d, SHORT) for d in screening.best(candidate, 2)]
-    first = candidate.effect.parameters[0]
-    for amplitude in first.far:
-        for shape in start_grid(candidate):
-            tail = shape.copy()
-            tail[0] = first.encode(amplitude)
-            for base in (np.zeros_like(near.base), near.base):
-                x = np.concatenate([base, near.x[near.n_base :], tail])
-                starts.append(CandidateFit(problem, x, cost_at(problem, x, SHORT)))
+    for tail in (*_far(candidate), *few.hints(near, candidate)):
+        for base in (np.zeros_like(near.base), near.base):
+            x = np.concatenate([base, near.x[near.n_base :], tail])
+            starts.append(CandidateFit(problem, x, cost_at(problem, x, SHORT)))
     return sorted(starts, key=lambda s: s.cost)
+
+
+def _far(candidate: Candidate) -> list[FloatArray]:
+    """Return starts of a strong effect, where its directed test misleads."""
+    first = candidate.effect.parameters[0]
+    return [
+        np.array([first.encode(amplitude), *shape[1:]])
+        for amplitude in first.far
+        for shape in start_grid(candidate)
+    ]
