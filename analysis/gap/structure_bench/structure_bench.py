@@ -27,7 +27,9 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
 )
 from jointbench.analysis.gap.structure_bench.whitening import (
     HitWhitening,
+    HumWhitening,
     directions_found,
+    hum_whitening,
     whitening_of,
 )
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
@@ -244,6 +246,8 @@ class StructureBench:
             np.divide(rows, self.sigma[:, :, None], out=columns[k])
         for k, forces in enumerate(added):
             columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
+        for one in columns:
+            self._steadied(one)
         flat = columns.reshape(len(columns), records, -1)
         self._white(model.shape[1])(flat.transpose(1, 0, 2))
         return flat.reshape(len(columns), -1).T
@@ -301,7 +305,7 @@ class StructureBench:
         count = modelled.shape[2]
         r = modelled - self.campaign.hits.response[:, :, :count] - self._expected(count)
         scaled = self._scaled(count)
-        flat = (r / self.sigma[:, :, None]).reshape(len(r), -1)
+        flat = self._steadied(r / self.sigma[:, :, None]).reshape(len(r), -1)
         found = directions_found(scaled, flat) * self.direction_sd
         return found[:, :4], found[:, 4]
 
@@ -370,7 +374,24 @@ class StructureBench:
         if self.directions is None:
             raise ValueError("directions are computed by `at` first")
         rows = self.directions[..., :count] / self.sigma[:, None, :, None]
-        return rows.reshape(*rows.shape[:2], -1)
+        return self._steadied(rows).reshape(*rows.shape[:2], -1)
+
+    def _steadied(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows over sigma for what is left of the hum of channels, in place.
+
+        Args:
+            rows: shape (n_records, ..., n_channels, n_samples).
+        """
+        hits, count = self.campaign.hits, rows.shape[-1]
+        if not hits.hum.size:
+            return rows
+        found: HumWhitening = self._kept(
+            ("hum", count),
+            lambda: hum_whitening(
+                hits.hum[:, :count], hits.noise * np.sqrt(self.coherence) / self.sigma
+            ),
+        )
+        return found(rows)
 
     def _expected(self, count: int) -> FloatArray:
         """Return the response of the expansion that its prior mean removes."""
@@ -383,7 +404,7 @@ class StructureBench:
 
     def _whitened(self, rows: FloatArray) -> FloatArray:
         """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""
-        scaled = rows / self.sigma[:, None, :, None]
+        scaled = self._steadied(rows / self.sigma[:, None, :, None])
         flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
         return self._white(rows.shape[3])(flat)
 

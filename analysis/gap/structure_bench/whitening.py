@@ -33,6 +33,40 @@ class HitWhitening:
         return rows
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class HumWhitening:
+    """Inverse root of the covariance of each channel, with what is left of its hum.
+
+    Attributes:
+        basis: orthonormal directions of all channels, shape (n_directions, n_samples).
+        taken: share of each that is removed, shape (n_records, n_channels,
+            n_directions).
+    """
+
+    basis: FloatArray
+    taken: FloatArray
+
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows over sigma in place, (n_records, ..., n_channels, n_samples)."""
+        records, channels, count = self.taken.shape
+        between = (1,) * (rows.ndim - 3)
+        taken = self.taken.reshape(records, *between, channels, count)
+        rows -= ((rows @ self.basis.T) * taken) @ self.basis
+        return rows
+
+
+def hum_whitening(hum: FloatArray, noise: FloatArray) -> HumWhitening:
+    """Return the whitening for what is left of offset and hum.
+
+    Args:
+        hum: directions of unit sd over the noise, shape (n_directions, n_samples).
+        noise: over sigma, shape (n_records, n_channels).
+    """
+    _, size, basis = np.linalg.svd(hum, full_matrices=False)
+    values = (noise[:, :, None] * size) ** 2
+    return HumWhitening(basis, 1.0 - 1.0 / np.sqrt(1.0 + values))
+
+
 def whitening_of(scaled: FloatArray) -> HitWhitening:
     """Return the whitening for directions.
 
