@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from jointbench.analysis.gap.structure_response.port_laws import iwan_sliders
+
 Json = dict[str, Any]
 _OWN_NAMES = {
     ("gain_error", "g"): "gain",
@@ -15,10 +17,12 @@ _OWN_NAMES = {
 """Names of parameters that the engine reports in other words than the truth."""
 _UNSIGNED = {"share", "angle"}
 """A turned sensor has a size and an azimuth, and either may carry the sign."""
-_SLIDERS = 400
-"""Sliders of an Iwan element in a loop."""
-_AMPLITUDES = (0.1, 0.3, 1.0)
-"""Of a loop over the largest slip displacement, or over the reach of a law."""
+_POWERS = {"cubic": "k3", "quadratic": "k2", "damping_law": "c2"}
+"""Coefficients of laws without a further parameter."""
+_AMPLITUDES = (0.3, 0.6, 1.0)
+"""Of a loop, over the largest slip displacement or over the reach of a law."""
+_FINE = 1e-3
+"""Onset of the true micro-slip: its smallest sliders are far below any motion."""
 
 
 def effect_pairs(run: Json) -> Iterator[tuple[str, float, float, float]]:
@@ -77,8 +81,9 @@ def true_base(physical: Mapping[str, Any]) -> dict[str, float]:
 def loop_error(run: Json) -> float | None:
     """Return the largest relative error of the loops of a right law at a bolt.
 
-    Of friction, the energy of a cycle; of the others, the largest force. Each at three
-    amplitudes up to the slip displacement, or to three times the gap.
+    Of friction, the energy of a cycle at three amplitudes up to the largest slip
+    displacement, in shares of the spring; of a stop, the largest force up to three
+    times its gap; of the other laws, their coefficient.
 
     Returns:
         None if the effect is no law.
@@ -86,40 +91,29 @@ def loop_error(run: Json) -> float | None:
     (effect,) = run["found"]["effects"]
     name, true = effect["name"], run["truth"]["effects"][effect["name"]]
     found = {k: float(v["value"]) for k, v in effect["parameters"].items()}
+    if name not in {"microslip", "macroslip", "clearance", *_POWERS}:
+        return None
     errors = []
     for share in _AMPLITUDES:
-        pair = [_loop(name, values, share, true) for values in (found, true)]
-        if pair[1] is None:
-            return None
-        if pair[1] > 0:
-            errors.append(abs(float(pair[0] or 0.0) / pair[1] - 1.0))
-    return max(errors, default=None)
+        near, far = (_loop(name, values, share, true) for values in (found, true))
+        if far > 0.0:
+            errors.append(abs(near / far - 1.0))
+    return max(errors)
 
 
 def _loop(
     name: str, values: Mapping[str, float], share: float, true: Mapping[str, float]
-) -> float | None:
-    match name:
-        case "microslip":
-            amplitude = share * true["phimax"]
-            return values["share"] * _slip_energy(values, amplitude)
-        case "macroslip":
-            amplitude, slip = 10.0 * share * true["slip"], values["slip"]
-            return values["share"] * slip * max(amplitude - slip, 0.0)
-        case "clearance":
-            return values["k"] * max(3.0 * share * true["g"] - values["g"], 0.0)
-        case "cubic" | "quadratic" | "damping_law":
-            (key,) = true
-            return abs(values[key])
-    return None
-
-
-def _slip_energy(values: Mapping[str, float], amplitude: float) -> float:
-    """Return the energy of a cycle over 4 k of an Iwan element (Segalman 2005)."""
-    onset = values.get("onset", 0.0) * values["phimax"]
-    edges = np.linspace(0.0, values["phimax"], _SLIDERS + 1)
-    middle = np.maximum(0.5 * (edges[1:] + edges[:-1]), onset)
-    power = values["chi"] + 2.0
-    weight = np.diff(edges**power)
-    weight /= weight.sum()
-    return float(np.sum(weight * middle * np.maximum(amplitude - middle, 0.0)))
+) -> float:
+    """Return the energy of a cycle of friction, or the force of another law."""
+    if name == "microslip":
+        slips, weights = iwan_sliders(
+            values["phimax"], values["chi"] + 2.0, values.get("onset", _FINE)
+        )
+        beyond = np.maximum(share * true["phimax"] - slips, 0.0)
+        return float(values["share"] * np.sum(weights * slips * beyond))
+    if name == "macroslip":
+        beyond_slip = max(10.0 * share * true["slip"] - values["slip"], 0.0)
+        return values["share"] * values["slip"] * beyond_slip
+    if name == "clearance":
+        return values["k"] * max(3.0 * share * true["g"] - values["g"], 0.0)
+    return abs(values[_POWERS[name]])

@@ -125,6 +125,8 @@ def word_for(run: Json) -> str:
     named = {str(effect["name"]) for effect in found["effects"] or ()}
     if run["wanted"] == "named" and named == truth:
         return "right"
+    if run["wanted"] == "named" and named and named < truth:
+        return "one of two"
     alike = all(any({t, n} <= f for f in _FAMILIES) for t in truth for n in named)
     if truth and named and alike:
         return "family"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import words_of
-from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
@@ -52,7 +52,8 @@ def in_whole_records(
         if explained and fit.cost > STRUCTURE.explained_cost_ratio * carried[0].cost:
             continue
         progress(f"{words_of(fit.candidates)} in whole records")
-        near.append(approached(few, fit.x, fit.candidates))
+        own, found = approached(few, fit.x, fit.candidates)
+        near.append((own, without_slopes(found)))
     near.sort(key=lambda one: one[1].cost)
     done: list[JudgedFit] = []
     for own, fit in near:
@@ -63,7 +64,10 @@ def in_whole_records(
             bench, fit.x, fit.candidates, near=near_records(own, fit)
         )
         done.append(JudgedFit(whole, found, accept_structure(whole, found, base)))
-    return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
+        done.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
+        # The slopes of all records are needed of the best fit alone.
+        done[1:] = [replace(one, fit=without_slopes(one.fit)) for one in done[1:]]
+    return done
 
 
 def _explains(found: tuple[StructureBench, Fit]) -> bool:
