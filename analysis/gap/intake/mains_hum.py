@@ -46,7 +46,7 @@ class MainsHum:
         Args:
             values: shape (n_rows, n_samples).
         """
-        basis = self._basis(np.arange(values.shape[1]))
+        basis = self._basis(np.arange(values.shape[1], dtype=float))
         before = values[:, : self.quiet]
         weights = self.root @ self.root.T @ (basis[:, : self.quiet] @ before.T)
         return np.asarray(values - weights.T @ basis)

@@ -129,21 +129,24 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
         _compliant((0, 1)),
         always=True,
     ),
-    one_parameter(
-        "joint_compliance_rocking",
-        "stiffness",
-        Parameter(
-            "compliance",
-            "rad/(N m)",
-            "rocking",
-            lower=0.0,
-            upper=30.0,
-            off=0.0,
-            far=(0.3, 1.0),
+    replace(
+        one_parameter(
+            "joint_compliance_rocking",
+            "stiffness",
+            Parameter(
+                "compliance",
+                "rad/(N m)",
+                "rocking",
+                lower=0.0,
+                upper=30.0,
+                off=0.0,
+                far=(0.3, 1.0),
+            ),
+            _COUPLING,
+            joint_axes,
+            _rock,
         ),
-        _COUPLING,
-        joint_axes,
-        _rock,
+        by_frequency=True,
     ),
     StructureEffect(
         Effect(

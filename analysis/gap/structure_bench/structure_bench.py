@@ -9,7 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.model.diagnosis_record import View
-from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.effect import Candidate, Term, may_join
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
@@ -194,6 +194,13 @@ class StructureBench:
         """Return whether any of the effects, or every one, is integrated in time."""
         names = {e.effect.name for e in self.entries if e.nonlinear}
         return (all if every else any)(c.effect.name in names for c in candidates)
+
+    def may_add(self, candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
+        """Return whether an effect may be fitted beside others."""
+        names = {e.effect.name for e in self.entries if e.by_frequency}
+        every = (candidate, *fitted)
+        apart = any(c.effect.name in names for c in every) and self.nonlinear(every)
+        return may_join(candidate, fitted) and not apart
 
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""

@@ -26,6 +26,8 @@ class StructureEffect:
         change: adds it to a state of the model.
         nonlinear: True if it is integrated in time.
         always: True if fits start from it whatever the directed tests find.
+        by_frequency: True if it is not integrated in time, so that no law that is can
+            be fitted beside it.
         aimed: True if it moves the mark of a point: fits also start at the mean place
             where the hits of the point landed.
     """
@@ -35,6 +37,7 @@ class StructureEffect:
     change: Change
     nonlinear: bool = False
     always: bool = False
+    by_frequency: bool = False
     aimed: bool = False
 
 

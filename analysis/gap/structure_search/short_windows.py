@@ -4,7 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.model.effect import Candidate, may_join, words_of
+from jointbench.analysis.gap.model.effect import Candidate, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -26,7 +26,7 @@ def tested(few: StructureBench, near: Fit) -> Screening:
         few: one record of each condition.
         near: fit in the short window, with or without effects.
     """
-    others = [c for c in few.candidates if may_join(c, near.candidates)]
+    others = [c for c in few.candidates if few.may_add(c, near.candidates)]
     return screen(few, near, others, resolution=SHORT)
 
 
@@ -91,7 +91,7 @@ def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candid
     fill all places.
     """
     always = {e.effect.name for e in few.entries if e.always}
-    free = [c for c in few.candidates if may_join(c, near.candidates)]
+    free = [c for c in few.candidates if few.may_add(c, near.candidates)]
     chosen = [c for c in free if c.effect.name in always or few.hints(near, c)]
     others: list[Candidate] = []
     for c in screening.leaders(len(few.candidates)):

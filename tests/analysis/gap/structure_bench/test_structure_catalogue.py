@@ -90,6 +90,21 @@ def test_an_effect_vanishes_where_it_is_off(bench: StructureBench, name: str) ->
     assert _finite(bench, candidate, shape)
 
 
+def test_what_is_not_integrated_in_time_is_not_paired_with_a_law(
+    bench: StructureBench,
+) -> None:
+    """A joint that rocks goes with a mass, not with micro-slip; nothing goes twice."""
+    first = {c.effect.name: c for c in reversed(bench.candidates)}
+    rocks, slips, heavy = (
+        first[name] for name in ("joint_compliance_rocking", "microslip", "added_mass")
+    )
+    assert bench.may_add(heavy, (rocks,))
+    assert bench.may_add(slips, (heavy,))
+    assert not bench.may_add(slips, (rocks,))
+    assert not bench.may_add(rocks, (slips,))
+    assert not bench.may_add(heavy, (heavy,))
+
+
 def _finite(bench: StructureBench, candidate: Candidate, shape: FloatArray) -> bool:
     values = np.array(
         [
