@@ -109,6 +109,9 @@ def place_right(
     kind, _, name = site.removesuffix(" normal").partition(":")
     if "bolt" in where:
         return None if where["bolt"] == "all" else site == f"bolt:{where['bolt']}"
+    for key, word in (("foot", "foot"), ("body", "body"), ("axis", "joint")):
+        if key in where and "xyz_mm" not in where:
+            return site == f"{word}:{where[key]}"
     own = where.get("point", where.get("channel"))
     if own is None:
         return None
