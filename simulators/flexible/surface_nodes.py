@@ -45,4 +45,4 @@ def _around(body: ElasticBody, place: BodyPlace) -> FloatArray:
     nodes = np.tile(np.array(place.position), (first.size, 1))
     nodes[:, axes[0]], nodes[:, axes[1]] = first.ravel(), second.ravel()
     apart = np.linalg.norm(nodes - np.array(place.position), axis=1)
-    return nodes[apart < _NEAR]
+    return np.asarray(nodes[apart < _NEAR])
