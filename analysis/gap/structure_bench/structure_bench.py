@@ -119,15 +119,18 @@ class StructureBench:
 
     @property
     def coherence(self) -> float:
-        """Hits over hit points where the modal table is uncertain; 1 for exact ones.
+        """Samples over independent errors of an uncertain modal table; 1 if exact.
 
-        The error of a table is the same in all hits of a point, so more hits do not
-        average it out: fits give it as much weight as one hit of each point has.
+        The error of a table is the same in all hits of a point, and in a record it is
+        one amplitude and one phase of each mode: neither more hits nor more samples
+        average it out. Fits give a record the weight of as many numbers.
         """
         if self.campaign.nominal.table_sd[1] == 0.0:
             return 1.0
         points = np.unique(self.campaign.hits.point).size
-        return len(self.campaign.hits.names) / points
+        records, _, count = self.campaign.hits.response.shape
+        modes = max(len(self.layout.tuned), 1)
+        return records / points * max(count / (2 * modes), 1.0)
 
     @property
     def expanded(self) -> bool:
