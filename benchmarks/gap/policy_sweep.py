@@ -45,7 +45,7 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.second_method.second_method_settings import (
     SECOND_METHOD,
 )
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.simulators.campaigns.campaign_records import make_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 

@@ -108,6 +108,22 @@ def displacement(modes: BlockModes, place: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("cijkm,i,j,k->cm", modes.coefficients, x, y, z))
 
 
+def displacements(modes: BlockModes, places: FloatArray) -> FloatArray:
+    """Return the displacement of each mode at places, shape (n_places, 3, n_modes).
+
+    Args:
+        modes: of the block.
+        places: from the corner with the least coordinates [m], shape (n_places, 3).
+    """
+    x, y, z = (
+        legendre.legvander(2 * at / side - 1, count - 1)
+        for at, side, count in zip(places.T, modes.block.size, modes.terms, strict=True)
+    )
+    products = np.einsum("ni,nj,nk->nijk", x, y, z).reshape(len(places), -1)
+    shapes = modes.coefficients.reshape(_AXES, products.shape[1], -1)
+    return np.asarray((products @ shapes).transpose(1, 0, 2))
+
+
 def displacement_gradient(modes: BlockModes, place: FloatArray) -> FloatArray:
     """Return the derivatives of the displacement at a place [1/(m kg^0.5)].
 

@@ -12,7 +12,9 @@ from jointbench.simulators.flexible.flexible_effects import FlexibleEffect
 from jointbench.simulators.flexible.flexible_specimen import (
     BodyPlace,
     BoltedSpecimen,
+    ElasticBody,
     Vector,
+    along_face,
 )
 from jointbench.simulators.flexible.sensor_chain import FULL_SCALE, sensitivities
 
@@ -30,19 +32,21 @@ def sensor_rows(
         position, direction = sensor.position, np.asarray(sensor.direction)
         for effect in effects:
             if effect.where.get("channel") == sensor.name:
-                position, direction = _moved(sensor, position, direction, effect)
+                body = specimen.bodies[sensor.body]
+                position, direction = _moved(body, sensor, direction, effect)
         rows.append(direction @ place.rows(sensor.body, position))
     return np.stack(rows)
 
 
 def _moved(
-    sensor: BodyPlace, position: Vector, direction: FloatArray, effect: FlexibleEffect
+    body: ElasticBody, sensor: BodyPlace, direction: FloatArray, effect: FlexibleEffect
 ) -> tuple[Vector, FloatArray]:
     """Return place and direction of a sensor with a fault."""
     p, normal = effect.parameters, np.asarray(sensor.direction)
+    position = sensor.position
     plane = surface_axes(sensor)
     if effect.name == "wrong_position":
-        return shifted(sensor, p["u"], p["v"]), direction
+        return along_face(body, sensor, p["u"], p["v"]), direction
     if effect.name == "wrong_direction":
         return position, np.cos(p["angle"]) * normal + np.sin(p["angle"]) * plane[0]
     if effect.name == "cross_axis":
@@ -56,13 +60,6 @@ def surface_axes(place: BodyPlace) -> tuple[FloatArray, FloatArray]:
         axis for axis in np.eye(3) if abs(axis @ np.asarray(place.direction)) < 0.5
     )
     return first, second
-
-
-def shifted(place: BodyPlace, u: float, v: float) -> Vector:
-    """Return a place moved by u and v [m] along the axes normal to its direction."""
-    first, second = surface_axes(place)
-    x, y, z = np.asarray(place.position) + u * first + v * second
-    return float(x), float(y), float(z)
 
 
 def faulty_signals(

@@ -12,13 +12,10 @@ from jointbench.simulators.flexible.closed_structure import (
     Coordinates,
     close_structure,
 )
-from jointbench.simulators.flexible.faulty_sensors import (
-    shifted,
-)
 from jointbench.simulators.flexible.flexible_effects import (
     FlexibleEffect,
 )
-from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen
+from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen, along_face
 from jointbench.simulators.flexible.friction_and_stops import LawBank, law_bank
 from jointbench.simulators.flexible.gauss_integration import HitSet
 from jointbench.simulators.flexible.hidden_in_joint import (
@@ -135,7 +132,8 @@ def _load(bench: FlexibleBench, hit: HitRecord) -> FloatArray:
     place = aimed.position
     for effect in bench.effects:
         if effect.name == "wrong_hit_point" and effect.where["point"] == aimed.name:
-            place = shifted(aimed, effect.parameters["u"], effect.parameters["v"])
+            p, body = effect.parameters, bench.specimen.bodies[aimed.body]
+            place = along_face(body, aimed, p["u"], p["v"])
     x, y, z = np.asarray(place) + np.asarray(hit.offset)
     rows = bench.coordinates.rows(aimed.body, (float(x), float(y), float(z)))
     return np.asarray(np.asarray(hit.direction) @ rows)

@@ -9,7 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen
+from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen, along_face
 from jointbench.simulators.flexible.joint_values import BoltValues
 
 
@@ -283,11 +283,18 @@ def _cable(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
 def _shifted(
     low: float, high: float, place: Callable[..., dict[str, int | str]]
 ) -> Draw:
-    """Return an offset in the plane of a surface [m]."""
+    """Return an offset along the face of a body that does not leave it [m]."""
 
     def draw(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
-        size, turn = _log(rng, low, high), rng.uniform(0, 2 * np.pi)
-        return _effect(place(s, rng), u=size * np.cos(turn), v=size * np.sin(turn))
+        where = place(s, rng)
+        every = (*s.specimen.points, *s.specimen.sensors)
+        spot = next(each for each in every if each.name in where.values())
+        body = s.specimen.bodies[spot.body]
+        while True:
+            size, turn = _log(rng, low, high), rng.uniform(0, 2 * np.pi)
+            u, v = size * float(np.cos(turn)), size * float(np.sin(turn))
+            if body.holds(along_face(body, spot, u, v)):
+                return _effect(where, u=u, v=v)
 
     return draw
 

@@ -55,6 +55,14 @@ class ElasticBody:
         """Return a place from the corner of the body [m], shape (3,)."""
         return np.asarray(np.subtract(place, self.corner), dtype=float)
 
+    def holds(self, place: Vector) -> bool:
+        """Return whether a place is in the body or on its surface."""
+        inside = self.within(place)
+        edge = 1e-6  # [m]
+        return bool(
+            np.all((inside > -edge) & (inside < np.array(self.block.size) + edge))
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class BodyPlace:
@@ -71,6 +79,22 @@ class BodyPlace:
     body: int
     position: Vector
     direction: Vector
+
+
+def face_axes(body: ElasticBody, place: BodyPlace) -> tuple[int, int]:
+    """Return the indices of the two axes along the face of a body at a place."""
+    inside = body.within(place.position)
+    to_face = np.minimum(np.abs(inside), np.abs(inside - np.array(body.block.size)))
+    first, second = sorted(int(k) for k in np.argsort(to_face)[1:])
+    return first, second
+
+
+def along_face(body: ElasticBody, place: BodyPlace, u: float, v: float) -> Vector:
+    """Return a place moved by u and v [m] along the face of its body."""
+    moved = list(place.position)
+    for axis, offset in zip(face_axes(body, place), (u, v), strict=True):
+        moved[axis] += offset
+    return moved[0], moved[1], moved[2]
 
 
 @dataclass(frozen=True, slots=True)

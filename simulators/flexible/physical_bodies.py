@@ -18,6 +18,7 @@ from jointbench.simulators.flexible.block_modes import (
     BlockModes,
     displacement,
     displacement_gradient,
+    displacements,
 )
 from jointbench.simulators.flexible.flexible_specimen import (
     BoltedSpecimen,
@@ -64,6 +65,11 @@ class PhysicalBody:
         """Return the displacement at a place in the table, shape (3, listed)."""
         rows = displacement(self.modes, self.body.within(place))
         return rows[:, : self.listed]
+
+    def table_nodes(self, places: FloatArray) -> FloatArray:
+        """Return the displacement at places [m] in the table, (n, 3, listed)."""
+        rows = displacements(self.modes, places - np.array(self.body.corner))
+        return rows[..., : self.listed]
 
     def table_gradient(self, place: Vector) -> FloatArray:
         """Return its derivatives in the table, shape (3, 3, listed)."""

@@ -30,6 +30,7 @@ from jointbench.simulators.flexible.physical_bodies import (
     PhysicalBody,
 )
 from jointbench.simulators.flexible.sensor_chain import COUNT, FULL_SCALE, sensitivities
+from jointbench.simulators.flexible.surface_nodes import surface_nodes
 
 CAMPAIGN_SCHEMA, NOMINAL_SCHEMA = "campaign/1", "bench-sheet/1"
 Json = dict[str, object]
@@ -109,6 +110,8 @@ def _write_table(
     group["phi_bolts"] = np.stack([body.table_rows(at) for at in specimen.bolts])
     if own == 0:
         group["phi_feet"] = np.stack([body.table_rows(at) for at in specimen.feet])
+    group["nodes_m"] = surface_nodes(specimen, own)
+    group["phi_nodes"] = body.table_nodes(surface_nodes(specimen, own))
     for sensor in specimen.sensors:
         if sensor.body == own:
             rows = body.table_rows(sensor.position)

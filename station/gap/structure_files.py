@@ -6,9 +6,11 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.quoting import visible
-from jointbench.analysis.gap.diagnosis.structure_diagnosis import diagnose_structure
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
+from jointbench.analysis.gap.structure_search.structure_diagnosis import (
+    diagnose_structure,
+)
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 BESIDE = "sheet.json"

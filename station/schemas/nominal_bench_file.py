@@ -10,8 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.quoting import named, visible
-from jointbench.analysis.gap.intake.read_hit_campaign import PlannedPoint
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
+from jointbench.analysis.gap.intake.free_modes import PlannedPoint
+from jointbench.analysis.gap.structure_response.jointed_bodies import NominalBench
 from jointbench.station.files.json_file import read_json
 
 NOMINAL_SCHEMA = "bench-sheet/1"
@@ -35,6 +35,7 @@ class _Plates(_NominalPart):
 class _NominalPoint(_NominalPart):
     direction: tuple[Finite, Finite, Finite]
     body: str
+    position_mm: tuple[Finite, Finite, Finite] | None = None
 
 
 class _Sigmas(_NominalPart):
@@ -106,8 +107,17 @@ def read_nominal(path: Path) -> tuple[NominalBench, dict[str, PlannedPoint]]:
                 "write the direction of the hit"
             )
         x, y, z = (v / length for v in point.direction)
-        points[name] = PlannedPoint((x, y, z), point.body)
+        points[name] = PlannedPoint((x, y, z), point.body, _metres(point.position_mm))
     return _nominal(found), points
+
+
+def _metres(
+    place: tuple[float, float, float] | None,
+) -> tuple[float, float, float] | None:
+    if place is None:
+        return None
+    x, y, z = (1e-3 * value for value in place)
+    return x, y, z
 
 
 def _nominal(found: NominalFile) -> NominalBench:

@@ -13,15 +13,15 @@ import scipy.interpolate
 import scipy.signal
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     HitPoint,
     JointedBodies,
     MassPlace,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import LawForm, PortLaws
+from jointbench.analysis.gap.structure_response.port_laws import LawForm, PortLaws
 
 RATE = 32_768.0
 """Of the raw force [Hz]."""

@@ -15,7 +15,7 @@ import scipy.linalg
 from bolted_bodies import random_bodies
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 
 RATE, QUIET, SAMPLES = 12_800.0, 256, 1024
 POINTS = ("P1", "P2")

@@ -1,24 +1,27 @@
 # SPDX-License-Identifier: MIT
 """From raw hits to filtered records: bad hits left out, one filter for all channels."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.intake.intake_settings import HITS
+from jointbench.analysis.gap.intake.mains_hum import mains_hum
 from jointbench.analysis.gap.intake.raw_hits import (
     QuietHit,
     bad_hit,
     band_of,
     contact_samples,
-    mains_frequency,
     make_filter,
     quieted,
 )
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords, RejectedHit
-from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.hit_campaign import (
+    HitRecords,
+    RejectedHit,
+)
+from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,14 +78,11 @@ def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
     """
     quiet = raw.quiet - HITS.trigger_margin
     starts = [hit.counts[:, :quiet] for hit in raw.hits]
-    mains = mains_frequency(
-        np.concatenate(starts) - np.concatenate(starts).mean(axis=1, keepdims=True),
-        raw.sample_rate,
-    )
+    hum = mains_hum(np.concatenate(starts), raw.sample_rate)
     good: list[tuple[RawHit, QuietHit]] = []
     rejected = []
     for hit in raw.hits:
-        values = quieted(hit.counts * raw.units[:, None], quiet, mains, raw.sample_rate)
+        values = quieted(hit.counts * raw.units[:, None], hum)
         volts = hit.counts * raw.volts[:, None]
         reason = bad_hit(values, volts, raw.full_scale, hit.aimed)
         if reason:
@@ -94,7 +94,11 @@ def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
             f"{raw.where} has {len(good)} hits that can be used, 2 or more are "
             f"required; {rejected[0].reason if rejected else 'record more hits'}"
         )
-    return _filtered(raw, bodies, good, tuple(rejected))
+    found = _filtered(raw, bodies, good, tuple(rejected))
+    samples = raw.hits[0].counts.shape[1]
+    kept = np.arange(samples - found.raw_force.shape[1], samples, found.filter.step)
+    gain = float(np.linalg.norm(found.filter.kernel))
+    return replace(found, hum=hum.left(kept.astype(float)) / gain)
 
 
 def _filtered(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Modes of the free bodies of a `campaign/1` file, as rows of joints and sensors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import h5py
@@ -12,18 +12,38 @@ from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import shown, visible
 from jointbench.analysis.gap.intake.intake_settings import HITS
 from jointbench.analysis.gap.intake.typed_hdf5 import finite_array, require_group
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     HitPoint,
     JointedBodies,
     MassPlace,
+)
+from jointbench.analysis.gap.structure_response.surface_around import (
+    SurfaceAround,
+    surface_around,
 )
 
 BODIES = ("bottom", "top")
 _Vector = tuple[float, ...] | None
 _Sensor = tuple[str, int, _Vector, _Vector]
 """Channel, index of its body, position [m], direction."""
-_Points = Mapping[str, tuple[tuple[float, float, float], str]]
-"""Direction of a hit, and the body that is hit, by point."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedPoint:
+    """A hammer point of the nominal parameters.
+
+    Attributes:
+        direction: of an exact hit, a unit vector.
+        body: that is hit.
+        position: [m]; None if it is not stated.
+    """
+
+    direction: tuple[float, float, float]
+    body: str
+    position: tuple[float, float, float] | None = None
+
+
+_NONE = np.zeros((0, 3))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +72,20 @@ class _Table:
         rows[..., self.before : self.before + count] = own
         return rows
 
+    def around(self, place: _Vector) -> SurfaceAround | None:
+        """Return the surface around a place, if the table lists its nodes."""
+        if "nodes_m" not in self.group or place is None:
+            return None
+        nodes = finite_array(self.where, self.group, "nodes_m")
+        if nodes.ndim != 2 or nodes.shape[1] != 3 or len(nodes) > HITS.most_nodes:
+            raise FormatError(
+                f"{self.where} has 'nodes_m' of shape {nodes.shape}, up to "
+                f"{HITS.most_nodes} rows of x, y and z are read; store one row for "
+                "each node"
+            )
+        rows = self.rows(self.group, "phi_nodes", (len(nodes), 3))
+        return surface_around(place, nodes, rows)
+
     def points(self, name: str) -> FloatArray:
         """Return the rows of bolts or feet, shape (n_points, 3, n_all_modes)."""
         found = self.group.get(name)
@@ -68,7 +102,7 @@ def read_bodies(
     where: str,
     file: h5py.File,
     sensors: Sequence[_Sensor],
-    points: _Points,
+    points: Mapping[str, PlannedPoint],
     rigid: BoolArray,
 ) -> JointedBodies:
     """Read the modal tables of both bodies.
@@ -101,7 +135,8 @@ def read_bodies(
         for name, body, *_ in sensors
     ]
     sites = _sites(tables, sensors)
-    hit_points = tuple(_hit_point(tables, name, *p) for name, p in points.items())
+    hit_points = tuple(_hit_point(tables, name, p) for name, p in points.items())
+    directions = [direction for *_, direction in sensors if direction is not None]
     return JointedBodies(
         bodies=BODIES,
         body=np.repeat([0, 1], [t.frequency.size for t in tables]),
@@ -123,7 +158,24 @@ def read_bodies(
         ),
         rigid=(bool(rigid[0]), bool(rigid[1]), bool(rigid[2])),
         across=_across(sensors, sites, total=rows[0].size),
+        directions=np.array(directions) if len(directions) == len(sensors) else _NONE,
+        around_channels=_known(
+            (name, tables[body].around(place))
+            for name, body, place, direction in sensors
+            if len(directions) == len(sensors)
+        ),
+        around_points=_known(
+            (name, tables[BODIES.index(p.body)].around(p.position))
+            for name, p in points.items()
+        ),
     )
+
+
+def _known(
+    found: Iterable[tuple[str, SurfaceAround | None]],
+) -> dict[str, SurfaceAround]:
+    """Return the surfaces that the tables show, by name."""
+    return {name: one for name, one in found if one is not None}
 
 
 def _sites(
@@ -181,18 +233,17 @@ def _tables(where: str, file: h5py.File) -> tuple[_Table, ...]:
 def _hit_point(
     tables: Sequence[_Table],
     name: str,
-    direction: tuple[float, float, float],
-    body: str,
+    point: PlannedPoint,
 ) -> HitPoint:
-    if body not in BODIES:
+    if point.body not in BODIES:
         raise FormatError(
-            f"hammer point {visible(name)} is on body {shown(body)}; write "
+            f"hammer point {visible(name)} is on body {shown(point.body)}; write "
             f"{' or '.join(BODIES)} into the nominal parameters"
         )
-    table = tables[BODIES.index(body)]
+    table = tables[BODIES.index(point.body)]
     shapes = require_group(table.where, table.group, "phi_hit")
     rows = table.rows(shapes, name, (3,))
-    normal = np.array(direction)
+    normal = np.array(point.direction)
     across = np.linalg.svd(normal[None])[2][1:]
     slopes = require_group(table.where, table.group, "phi_hit_gradient")
     gradient = table.rows(slopes, name, (3, 3))

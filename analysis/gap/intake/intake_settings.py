@@ -122,14 +122,20 @@ INTAKE = IntakeSettings()
 class HitSettings:
     """Numbers of the intake of raw hits; unit, purpose and basis are with each."""
 
-    mains_band: tuple[float, float] = numerical(
-        (45.0, 65.0), "Hz", "frequencies at which mains hum is sought"
+    mains: tuple[float, float] = numerical(
+        (50.0, 60.0), "Hz", "nominal frequencies of the mains"
     )
-    mains_step: float = numerical(
+    mains_sd: float = numerical(
         0.1,
         "Hz",
-        "step of the search for the mains frequency",
-        "over a quiet start of 20 ms it turns the phase by 0.7 degrees",
+        "sd of the frequency of the mains about the nominal one",
+        "a quiet start of 20 ms shows it to a hertz or more; networks hold it to 0.05",
+    )
+    least_hum: float = numerical(
+        0.005,
+        "of the variance of the noise",
+        "least variance of the hum that is allowed for",
+        "an amplitude of a tenth of the noise",
     )
     contact_noise_sd: float = numerical(
         5.0, "sd", "force above which a sample belongs to a contact"
@@ -184,6 +190,9 @@ class HitSettings:
         64, "samples", "shortest quiet start: offset, hum and noise come from it"
     )
     most_joints: int = numerical(64, "points", "most bolts or feet that are read")
+    most_nodes: int = numerical(
+        200_000, "nodes", "most nodes of the surface of a body that are read"
+    )
     most_modes: int = numerical(500, "modes", "most modes of a body that are read")
 
 

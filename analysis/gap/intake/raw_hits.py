@@ -7,7 +7,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.intake.intake_settings import HITS
-from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
+from jointbench.analysis.gap.intake.mains_hum import MainsHum
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,51 +24,16 @@ class QuietHit:
     noise: FloatArray
 
 
-def mains_frequency(starts: FloatArray, sample_rate: float) -> float:
-    """Return the frequency of the mains hum [Hz], from the quiet starts of all hits.
-
-    Args:
-        starts: samples before the hits, shape (n_traces, n_samples).
-        sample_rate: [Hz].
-    """
-    scaled = starts / np.maximum(starts.std(axis=1, keepdims=True), 1e-300)
-    tried = np.arange(*HITS.mains_band, HITS.mains_step)
-    left = [
-        float(np.sum((scaled - _fitted(scaled, f, sample_rate, scaled.shape[1])) ** 2))
-        for f in tried
-    ]
-    return float(tried[int(np.argmin(left))])
-
-
-def _basis(frequency: float, sample_rate: float, count: int) -> FloatArray:
-    angle = 2 * np.pi * frequency * np.arange(count) / sample_rate
-    return np.stack([np.ones(count), np.cos(angle), np.sin(angle)])
-
-
-def _fitted(
-    starts: FloatArray, frequency: float, sample_rate: float, count: int
-) -> FloatArray:
-    """Return offset and hum of traces, continued to `count` samples."""
-    basis = _basis(frequency, sample_rate, count)
-    known = basis[:, : starts.shape[1]]
-    weights = np.linalg.lstsq(known.T, starts.T, rcond=None)[0]
-    return np.asarray(weights.T @ basis)
-
-
-def quieted(
-    values: FloatArray, quiet: int, frequency: float, sample_rate: float
-) -> QuietHit:
+def quieted(values: FloatArray, hum: MainsHum) -> QuietHit:
     """Subtract offset and mains hum, both fitted before the hit.
 
     Args:
         values: shape (n_rows, n_samples).
-        quiet: samples before the hit.
-        frequency: of the mains [Hz].
-        sample_rate: [Hz].
+        hum: what the quiet starts of all hits tell of it.
     """
-    left = values - _fitted(values[:, :quiet], frequency, sample_rate, values.shape[1])
-    dof = max(quiet - 3, 1)
-    return QuietHit(left, np.sqrt(np.sum(left[:, :quiet] ** 2, axis=1) / dof))
+    left = hum.subtracted(values)
+    dof = max(hum.quiet - len(hum.root), 1)
+    return QuietHit(left, np.sqrt(np.sum(left[:, : hum.quiet] ** 2, axis=1) / dof))
 
 
 def contact_samples(force: FloatArray, noise: float) -> BoolArray:

@@ -15,7 +15,7 @@ from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.quoting import named, shown, visible
 from jointbench.analysis.gap.intake.filter_hits import RawHit, RawHits, filter_hits
-from jointbench.analysis.gap.intake.free_modes import read_bodies
+from jointbench.analysis.gap.intake.free_modes import PlannedPoint, read_bodies
 from jointbench.analysis.gap.intake.intake_settings import HITS
 from jointbench.analysis.gap.intake.typed_hdf5 import (
     finite_array,
@@ -23,24 +23,11 @@ from jointbench.analysis.gap.intake.typed_hdf5 import (
     positive_number,
     require_group,
 )
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.jointed_bodies import NominalBench
 
 HIT_SCHEMA = "campaign/1"
 FORCE, ACCELERATION = "force", "acceleration"
-
-
-@dataclass(frozen=True, slots=True)
-class PlannedPoint:
-    """A hammer point of the nominal parameters.
-
-    Attributes:
-        direction: of an exact hit, a unit vector.
-        body: that is hit.
-    """
-
-    direction: tuple[float, float, float]
-    body: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +93,9 @@ def _campaign(
         )
     channels = _channels(where, file)
     raw = _raw_hits(where, file, channels, tuple(points))
-    directions = {name: (p.direction, p.body) for name, p in points.items()}
     sensors = [(c.name, c.body, c.position, c.direction) for c in channels[1:]]
     rigid = np.isinf(nominal.stiffness)
-    bodies = read_bodies(where, file, sensors, directions, rigid)
+    bodies = read_bodies(where, file, sensors, points, rigid)
     hits = filter_hits(raw, bodies)
     return HitCampaign(path.stem, bodies, nominal, hits)
 

@@ -83,6 +83,11 @@ class Fit:
         return np.asarray(self.base * scaled)
 
 
+def without_slopes(fit: Fit) -> Fit:
+    """Return a fit that takes little memory; its covariance is not known any more."""
+    return replace(fit, jacobian=np.zeros((0, fit.x.size)))
+
+
 def split(
     x: FloatArray, n_base: int, candidates: Sequence[Candidate]
 ) -> tuple[Term, ...]:

@@ -4,10 +4,10 @@
 import numpy as np
 
 from jointbench.analysis.gap.model.effect import Site
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_bench.structure_effects import Sites
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
 
 
 def where_rigid(name: str, directions: tuple[int, ...]) -> Sites:

@@ -5,9 +5,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Site
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 AXES = ("x", "y")
 

@@ -14,12 +14,12 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.model.effect import Term
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.hit_frames import HitFrame
-from jointbench.analysis.gap.structure_bench.hit_response import law_forces
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.landing import landing_weights
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.hit_frames import HitFrame
+from jointbench.analysis.gap.structure_response.hit_response import law_forces
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.landing import landing_weights
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 class _LawBench(Protocol):

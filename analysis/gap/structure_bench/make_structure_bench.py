@@ -4,12 +4,6 @@
 import numpy as np
 
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
-from jointbench.analysis.gap.structure_bench.base_layout import base_layout
-from jointbench.analysis.gap.structure_bench.hit_campaign import (
-    HitCampaign,
-    record_blocks,
-)
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
@@ -19,7 +13,13 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
     structure_candidates,
     without_effects,
 )
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.base_layout import base_layout
+from jointbench.analysis.gap.structure_response.hit_campaign import (
+    HitCampaign,
+    record_blocks,
+)
+from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 def make_structure_bench(

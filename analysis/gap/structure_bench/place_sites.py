@@ -2,7 +2,7 @@
 """Sites at bodies, feet, points and channels of a structure."""
 
 from jointbench.analysis.gap.model.effect import Site
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 
 _ALONG = " normal"
 """Ending of a point at which something moves in the direction of the hit or sensor."""
@@ -51,6 +51,17 @@ def each_channel(campaign: HitCampaign) -> tuple[Site, ...]:
 def turned_channels(campaign: HitCampaign) -> tuple[Site, ...]:
     """Return every channel whose other directions the modal table lists."""
     return each_channel(campaign) if len(campaign.bodies.across) else ()
+
+
+def movable_channels(campaign: HitCampaign) -> tuple[Site, ...]:
+    """Return every channel around whose sensor the modal table shows the surface."""
+    known = campaign.bodies.around_channels
+    return tuple(site for site in each_channel(campaign) if site.name in known)
+
+
+def movable_points(campaign: HitCampaign) -> tuple[Site, ...]:
+    """Return every hammer point around which the modal table shows the surface."""
+    return tuple(Site("point", name) for name in campaign.bodies.around_points)
 
 
 def place_of(campaign: HitCampaign, site: Site) -> tuple[int, bool]:

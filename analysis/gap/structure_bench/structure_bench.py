@@ -9,7 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.model.diagnosis_record import View
-from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.effect import Candidate, Term, may_join
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
@@ -20,34 +20,39 @@ from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
-from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
-from jointbench.analysis.gap.structure_bench.hit_campaign import (
-    HitCampaign,
-    record_blocks,
-)
-from jointbench.analysis.gap.structure_bench.hit_frames import (
-    HitFrame,
-    hit_frame,
-    window_count,
-)
-from jointbench.analysis.gap.structure_bench.hit_response import (
-    HitModel,
-    direction_rows,
-    hit_model,
-)
-from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
-from jointbench.analysis.gap.structure_bench.landing import landing_weights
 from jointbench.analysis.gap.structure_bench.law_slopes import LawSlopes
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_state,
 )
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_bench.whitening import (
     HitWhitening,
+    HumWhitening,
     directions_found,
+    hum_whitening,
     whitening_of,
 )
+from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_response.hit_campaign import (
+    HitCampaign,
+    record_blocks,
+)
+from jointbench.analysis.gap.structure_response.hit_frames import (
+    HitFrame,
+    hit_frame,
+    window_count,
+)
+from jointbench.analysis.gap.structure_response.hit_response import (
+    HitModel,
+    direction_rows,
+    hit_model,
+)
+from jointbench.analysis.gap.structure_response.joint_state import JointState, state_of
+from jointbench.analysis.gap.structure_response.landing import (
+    landing_weights,
+    mean_landing,
+)
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,15 +119,18 @@ class StructureBench:
 
     @property
     def coherence(self) -> float:
-        """Hits over hit points where the modal table is uncertain; 1 for exact ones.
+        """Samples over independent errors of an uncertain modal table; 1 if exact.
 
-        The error of a table is the same in all hits of a point, so more hits do not
-        average it out: fits give it as much weight as one hit of each point has.
+        The error of a table is the same in all hits of a point, and in a record it is
+        one amplitude and one phase of each mode: neither more hits nor more samples
+        average it out. Fits give a record the weight of as many numbers.
         """
         if self.campaign.nominal.table_sd[1] == 0.0:
             return 1.0
         points = np.unique(self.campaign.hits.point).size
-        return len(self.campaign.hits.names) / points
+        records, _, count = self.campaign.hits.response.shape
+        modes = max(len(self.layout.tuned), 1)
+        return records / points * max(count / (2 * modes), 1.0)
 
     @property
     def expanded(self) -> bool:
@@ -155,8 +163,23 @@ class StructureBench:
         return 0
 
     def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
-        """No effect starts from peaks of the residual."""
-        return []
+        """Return starts of a mark where the hits of its point landed, if far from it.
+
+        Aim and tilt of each hit take over most of a common offset, so directed tests
+        show little of it; the mean of the offsets found shows it instead.
+        """
+        known = {e.effect.name for e in self.entries if e.aimed}
+        if candidate.effect.name not in known:
+            return []
+        count = fit.residual.size // int(np.prod(self.blocks.shape[:2]))
+        window = count / self.campaign.hits.sample_rate
+        landing, _ = self.landed(fit.base, fit.terms, window)
+        offset = mean_landing(self.campaign, candidate.site.name, landing)
+        distance = float(np.linalg.norm(offset))
+        if distance < STRUCTURE.mark_sd * self.campaign.nominal.aim_sd:
+            return []
+        azimuth = float(np.arctan2(offset[1], offset[0]))
+        return [np.array([size * distance, azimuth]) for size in STRUCTURE.mark_starts]
 
     def scale(self, word: str) -> float:
         """Return the scale of a word [SI]."""
@@ -174,6 +197,13 @@ class StructureBench:
         """Return whether any of the effects, or every one, is integrated in time."""
         names = {e.effect.name for e in self.entries if e.nonlinear}
         return (all if every else any)(c.effect.name in names for c in candidates)
+
+    def may_add(self, candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
+        """Return whether an effect may be fitted beside others."""
+        names = {e.effect.name for e in self.entries if e.by_frequency}
+        every = (candidate, *fitted)
+        apart = any(c.effect.name in names for c in every) and self.nonlinear(every)
+        return may_join(candidate, fitted) and not apart
 
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""
@@ -226,6 +256,8 @@ class StructureBench:
             np.divide(rows, self.sigma[:, :, None], out=columns[k])
         for k, forces in enumerate(added):
             columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
+        for one in columns:
+            self._steadied(one)
         flat = columns.reshape(len(columns), records, -1)
         self._white(model.shape[1])(flat.transpose(1, 0, 2))
         return flat.reshape(len(columns), -1).T
@@ -283,7 +315,7 @@ class StructureBench:
         count = modelled.shape[2]
         r = modelled - self.campaign.hits.response[:, :, :count] - self._expected(count)
         scaled = self._scaled(count)
-        flat = (r / self.sigma[:, :, None]).reshape(len(r), -1)
+        flat = self._steadied(r / self.sigma[:, :, None]).reshape(len(r), -1)
         found = directions_found(scaled, flat) * self.direction_sd
         return found[:, :4], found[:, 4]
 
@@ -352,7 +384,24 @@ class StructureBench:
         if self.directions is None:
             raise ValueError("directions are computed by `at` first")
         rows = self.directions[..., :count] / self.sigma[:, None, :, None]
-        return rows.reshape(*rows.shape[:2], -1)
+        return self._steadied(rows).reshape(*rows.shape[:2], -1)
+
+    def _steadied(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows over sigma for what is left of the hum of channels, in place.
+
+        Args:
+            rows: shape (n_records, ..., n_channels, n_samples).
+        """
+        hits, count = self.campaign.hits, rows.shape[-1]
+        if not hits.hum.size:
+            return rows
+        found: HumWhitening = self._kept(
+            ("hum", count),
+            lambda: hum_whitening(
+                hits.hum[:, :count], hits.noise * np.sqrt(self.coherence) / self.sigma
+            ),
+        )
+        return found(rows)
 
     def _expected(self, count: int) -> FloatArray:
         """Return the response of the expansion that its prior mean removes."""
@@ -365,7 +414,7 @@ class StructureBench:
 
     def _whitened(self, rows: FloatArray) -> FloatArray:
         """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""
-        scaled = rows / self.sigma[:, None, :, None]
+        scaled = self._steadied(rows / self.sigma[:, None, :, None])
         flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
         return self._white(rows.shape[3])(flat)
 

@@ -12,28 +12,26 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
+from jointbench.analysis.gap.structure_bench.body_effects import BODY_EFFECTS
 from jointbench.analysis.gap.structure_bench.bolt_sites import (
     each_sliding_bolt,
     each_sprung_bolt,
     sliding_bolts,
     tangential_ports,
 )
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
-from jointbench.analysis.gap.structure_bench.linear_structure_effects import (
-    BODY_EFFECTS,
-    JOINT_EFFECTS,
-    SENSOR_EFFECTS,
-)
-from jointbench.analysis.gap.structure_bench.port_laws import (
-    LawForm,
-    PortLaws,
-    iwan_sliders,
-)
+from jointbench.analysis.gap.structure_bench.joint_effects import JOINT_EFFECTS
+from jointbench.analysis.gap.structure_bench.sensor_effects import SENSOR_EFFECTS
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     Change,
     StructureEffect,
+)
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
+from jointbench.analysis.gap.structure_response.port_laws import (
+    LawForm,
+    PortLaws,
+    iwan_sliders,
 )
 
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.model.effect import Candidate, Effect, Site, Term
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
+from jointbench.analysis.gap.model.effect_parameter import Parameter
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.joint_state import JointState
 
 Change = Callable[[JointState, HitCampaign, Site, FloatArray], JointState]
 """Adds an effect at a site with its values [SI] to a state."""
@@ -25,6 +26,10 @@ class StructureEffect:
         change: adds it to a state of the model.
         nonlinear: True if it is integrated in time.
         always: True if fits start from it whatever the directed tests find.
+        by_frequency: True if it is not integrated in time, so that no law that is can
+            be fitted beside it.
+        aimed: True if it moves the mark of a point: fits also start at the mean place
+            where the hits of the point landed.
     """
 
     effect: Effect
@@ -32,6 +37,29 @@ class StructureEffect:
     change: Change
     nonlinear: bool = False
     always: bool = False
+    by_frequency: bool = False
+    aimed: bool = False
+
+
+def one_parameter(
+    name: str,
+    family: str,
+    parameter: Parameter,
+    source: str,
+    sites: Sites,
+    change: Change,
+) -> StructureEffect:
+    """Return a linear effect of one parameter.
+
+    Args:
+        name: of the effect.
+        family: of effects that hits confuse.
+        parameter: its only one.
+        source: of its physics.
+        sites: where it can act.
+        change: adds it to a state.
+    """
+    return StructureEffect(Effect(name, family, (parameter,), source), sites, change)
 
 
 def structure_candidates(

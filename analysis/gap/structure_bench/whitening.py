@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,6 +31,40 @@ class HitWhitening:
         for row, basis, taken in zip(rows, self.basis, self.taken, strict=True):
             row -= ((row @ basis.T) * taken) @ basis
         return rows
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HumWhitening:
+    """Inverse root of the covariance of each channel, with what is left of its hum.
+
+    Attributes:
+        basis: orthonormal directions of all channels, shape (n_directions, n_samples).
+        taken: share of each that is removed, shape (n_records, n_channels,
+            n_directions).
+    """
+
+    basis: FloatArray
+    taken: FloatArray
+
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows over sigma in place, (n_records, ..., n_channels, n_samples)."""
+        records, channels, count = self.taken.shape
+        between = (1,) * (rows.ndim - 3)
+        taken = self.taken.reshape(records, *between, channels, count)
+        rows -= ((rows @ self.basis.T) * taken) @ self.basis
+        return rows
+
+
+def hum_whitening(hum: FloatArray, noise: FloatArray) -> HumWhitening:
+    """Return the whitening for what is left of offset and hum.
+
+    Args:
+        hum: directions of unit sd over the noise, shape (n_directions, n_samples).
+        noise: over sigma, shape (n_records, n_channels).
+    """
+    _, size, basis = np.linalg.svd(hum, full_matrices=False)
+    values = (noise[:, :, None] * size) ** 2
+    return HumWhitening(basis, 1.0 - 1.0 / np.sqrt(1.0 + values))
 
 
 def whitening_of(scaled: FloatArray) -> HitWhitening:

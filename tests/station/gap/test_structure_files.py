@@ -126,6 +126,14 @@ def _more_bolts(file: h5py.File) -> None:
     file["model/top/phi_bolts"] = rows
 
 
+def _flat_nodes(file: h5py.File) -> None:
+    file["model/top/nodes_m"] = np.zeros((40, 2))
+
+
+def _nodes_alone(file: h5py.File) -> None:
+    file["model/top/nodes_m"] = np.zeros((40, 3))
+
+
 @pytest.mark.parametrize(
     ("spoil", "error", "words"),
     [
@@ -139,6 +147,8 @@ def _more_bolts(file: h5py.File) -> None:
         (_no_model, FormatError, "no group 'model'"),
         (_all_double, BadData, "2 or more are required"),
         (_more_bolts, FormatError, "store the same bolts for both bodies"),
+        (_flat_nodes, FormatError, "rows of x, y and z are read"),
+        (_nodes_alone, FormatError, "'phi_nodes'"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_in_one_line(

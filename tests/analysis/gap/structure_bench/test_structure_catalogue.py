@@ -19,6 +19,7 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
 )
+from jointbench.analysis.gap.structure_response.surface_around import SurfaceAround
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 PLACES = np.array([[0.1, 0.1], [0.3, 0.1], [0.3, 0.2], [0.1, 0.2]])
@@ -33,13 +34,26 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> StructureBench:
     path, nominal = write_campaign(tmp_path_factory.mktemp("complete"), Hidden())
     campaign = read_hit_campaign(path, *read_nominal(nominal))
     bodies = campaign.bodies
+    around = _bent(bodies.omega.size)
     across = np.stack([np.roll(bodies.sensors, k, axis=1) for k in (1, 2)], axis=1)
     campaign = replace(
         campaign,
-        bodies=replace(bodies, across=across),
+        bodies=replace(
+            bodies,
+            across=across,
+            around_channels=dict.fromkeys(bodies.channels, around),
+            around_points={"P1": around},
+        ),
         nominal=replace(campaign.nominal, bolt_places=PLACES),
     )
     return make_structure_bench(campaign)
+
+
+def _bent(modes: int) -> SurfaceAround:
+    """Return a surface with quadratic shapes."""
+    powers = np.array([(i, j) for i in range(3) for j in range(3 - i)])
+    shapes = 0.1 * np.random.default_rng(8).standard_normal((len(powers), 3, modes))
+    return SurfaceAround((0, 1), np.array([0.06, 0.06]), powers, shapes)
 
 
 def test_sites_are_those_of_the_structure(bench: StructureBench) -> None:
@@ -49,6 +63,7 @@ def test_sites_are_those_of_the_structure(bench: StructureBench) -> None:
     assert [count[name] for name in ("loose_bolt", "cubic", "support")] == [4, 4, 4]
     assert [count[name] for name in ("contact_patch", "modulus")] == [2, 2]
     assert [count[name] for name in ("polarity", "cross_axis")] == [3, 3]
+    assert [count[name] for name in ("wrong_position", "wrong_hit_point")] == [3, 1]
     assert [count[name] for name in ("macroslip", "microslip")] == [5, 1]
     assert count["preload_damping"] == 1
     points = {c.site.name for c in bench.candidates if c.effect.name == "hidden_mode"}
@@ -71,8 +86,23 @@ def test_an_effect_vanishes_where_it_is_off(bench: StructureBench, name: str) ->
         return float(np.abs(moved - plain).max() / peak)
 
     assert change(0.0) < 1e-12
-    assert 1e-6 < change(first.far[0] if first.far else 0.3) < 30.0
+    assert 1e-6 < change(first.far[-1] if first.far else 0.3) < 30.0
     assert _finite(bench, candidate, shape)
+
+
+def test_what_is_not_integrated_in_time_is_not_paired_with_a_law(
+    bench: StructureBench,
+) -> None:
+    """A joint that rocks goes with a mass, not with micro-slip; nothing goes twice."""
+    first = {c.effect.name: c for c in reversed(bench.candidates)}
+    rocks, slips, heavy = (
+        first[name] for name in ("joint_compliance_rocking", "microslip", "added_mass")
+    )
+    assert bench.may_add(heavy, (rocks,))
+    assert bench.may_add(slips, (heavy,))
+    assert not bench.may_add(slips, (rocks,))
+    assert not bench.may_add(rocks, (slips,))
+    assert not bench.may_add(heavy, (heavy,))
 
 
 def _finite(bench: StructureBench, candidate: Candidate, shape: FloatArray) -> bool:

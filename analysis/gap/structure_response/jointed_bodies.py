@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Two bolted bodies in modal form: rows of bolts, feet, sensors and hit points."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.analysis.gap.structure_response.surface_around import SurfaceAround
 
 DIRECTIONS = ("x", "y", "z")
 NORMAL = 2
@@ -54,6 +56,20 @@ class HitPoint:
         """Make the arrays read-only."""
         freeze(self, "direction", "across", "rows", "gradient")
 
+    def beside(self, around: SurfaceAround, u: float, v: float) -> "HitPoint":
+        """Return the point with its mark beside its place.
+
+        Args:
+            around: the surface around it.
+            u: offset along the first axis of the surface [m].
+            v: along the second [m].
+        """
+        turned = self.across[:, list(around.axes)]
+        slopes = np.einsum("as,scn->acn", turned, around.change_of_slopes(u, v))
+        return replace(
+            self, rows=self.rows + around.change(u, v), gradient=self.gradient + slopes
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointedBodies:
@@ -73,6 +89,10 @@ class JointedBodies:
         rigid: directions without relative motion at the bolts in the model.
         across: motion at right angles to each sensor along two axes, shape
             (n_channels, 2, n_modes); empty if the table does not list it.
+        directions: unit vector of each sensor, shape (n_channels, 3); empty if it is
+            not stated.
+        around_channels: surface around each sensor that the table shows, by channel.
+        around_points: the same around hammer points, by point.
     """
 
     bodies: tuple[str, ...]
@@ -86,10 +106,14 @@ class JointedBodies:
     places: tuple[MassPlace, ...]
     rigid: tuple[bool, bool, bool]
     across: FloatArray
+    directions: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    around_channels: Mapping[str, SurfaceAround] = field(default_factory=dict)
+    around_points: Mapping[str, SurfaceAround] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "body", "omega", "bolts", "feet", "sensors", "across")
+        freeze(self, "directions")
 
     @property
     def joint_rows(self) -> FloatArray:

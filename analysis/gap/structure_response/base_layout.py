@@ -7,12 +7,12 @@ from enum import StrEnum
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     DIRECTIONS,
     JointedBodies,
     NominalBench,
 )
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 class BaseName(StrEnum):
@@ -86,7 +86,9 @@ def base_layout(
 
     The scatter from bolt to bolt enters as contrasts, orthogonal to the mean: a factor
     common to all bolts is a scale of their stiffness and damping. Where the modal table
-    is uncertain, the frequency of every free mode near the band is a coordinate.
+    is uncertain, the frequency of every free mode near the band is a coordinate. The
+    mass of a body scales the squares of its shapes: the modal table knows them to the
+    sd of the shapes, however well the body was weighed.
 
     Args:
         bodies: modes and rows.
@@ -99,7 +101,8 @@ def base_layout(
     common = float(np.hypot(nominal.stiffness_sd, nominal.bolt_sd / np.sqrt(count)))
     rows: list[tuple[str, float, str]] = []
     rows += [(modulus_name(b), nominal.modulus_sd, "-") for b in bodies.bodies]
-    rows += [(mass_name(b), nominal.mass_sd, "-") for b in bodies.bodies]
+    mass = float(np.hypot(nominal.mass_sd, nominal.table_sd[1]))
+    rows += [(mass_name(b), mass, "-") for b in bodies.bodies]
     rows += [(loss_name(b), nominal.loss[1], "-") for b in bodies.bodies]
     rows += [(stiffness_name(d), common, "N/m") for d in compliant]
     rows.append((BaseName.TANGENTIAL_DAMPING, nominal.damping_sd, "N s/m"))

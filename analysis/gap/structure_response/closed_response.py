@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.analysis.gap.structure_bench.base_layout import (
+from jointbench.analysis.gap.structure_response.base_layout import (
     BaseLayout,
     BaseName,
     bolt_name,
@@ -25,8 +25,11 @@ from jointbench.analysis.gap.structure_bench.base_layout import (
     modulus_name,
     stiffness_name,
 )
-from jointbench.analysis.gap.structure_bench.joint_state import Attached, JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL, JointedBodies
+from jointbench.analysis.gap.structure_response.joint_state import Attached, JointState
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
+    NORMAL,
+    JointedBodies,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -164,7 +167,7 @@ def _ends(
 ) -> tuple[FloatArray, FloatArray]:
     """Return rows and columns, with those of attached things at their ends."""
     places = [a.rows(bodies) for a in state.attached]
-    sensors = bodies.sensors if state.sensors is None else state.sensors
+    sensors = state.sensors_of(bodies)
     return (
         np.concatenate([sensors, *places]),
         np.concatenate([columns, *places]),

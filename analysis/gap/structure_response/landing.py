@@ -9,7 +9,8 @@ products of three force directions with the shape and its two derivatives.
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitPoint
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.jointed_bodies import HitPoint
 
 COLUMNS = 9
 """Columns of a hit point."""
@@ -35,6 +36,21 @@ def landing_weights(landing: FloatArray) -> FloatArray:
     force /= np.linalg.norm(force, axis=1, keepdims=True)
     shape = np.stack([ones, landing[:, 2], landing[:, 3]], axis=1)
     return (shape[:, :, None] * force[:, None, :]).reshape(-1, COLUMNS)
+
+
+def mean_landing(campaign: HitCampaign, point: str, landing: FloatArray) -> FloatArray:
+    """Return the mean offset of the hits of a point along its surface [m], shape (2,).
+
+    Args:
+        campaign: with the surface around the point.
+        point: its name.
+        landing: tilts [rad] and offsets [m] of each hit, shape (n_hits, 4).
+    """
+    bodies = campaign.bodies
+    index = [p.name for p in bodies.points].index(point)
+    own = landing[campaign.hits.point == index, 2:]
+    axes = list(bodies.around_points[point].axes)
+    return np.asarray(own.mean(axis=0) @ bodies.points[index].across[:, axes])
 
 
 def landing_slopes(landing: FloatArray) -> FloatArray:

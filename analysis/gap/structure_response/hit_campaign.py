@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Filtered hits on bolted bodies, and the hits that were left out."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.analysis.gap.residuals.fit_records import Blocks
-from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     JointedBodies,
     NominalBench,
 )
@@ -43,6 +43,8 @@ class HitRecords:
         raw_force: unfiltered force [N] from the first sample on, (n_records, n_raw).
         filter: that both have passed.
         rejected: hits left out.
+        hum: what may be left of offset and mains hum in a record, in directions of unit
+            sd over the noise of the channel, shape (n_directions, n_samples).
     """
 
     names: tuple[str, ...]
@@ -58,11 +60,12 @@ class HitRecords:
     raw_force: FloatArray
     filter: CommonFilter
     rejected: tuple[RejectedHit, ...] = ()
+    hum: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "force", "response", "noise", "point", "torque", "level")
-        freeze(self, "raw_force")
+        freeze(self, "raw_force", "hum")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

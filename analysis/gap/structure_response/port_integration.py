@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.analysis.gap.structure_bench.acting_laws import ActingLaws
-from jointbench.analysis.gap.structure_bench.closed_modes import ClosedModes
-from jointbench.analysis.gap.structure_bench.port_steps import integrate_hits
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.acting_laws import ActingLaws
+from jointbench.analysis.gap.structure_response.closed_modes import ClosedModes
+from jointbench.analysis.gap.structure_response.port_steps import integrate_hits
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -205,6 +205,13 @@ class StructureSettings:
     leading_sites: int = numerical(
         2, "sites", "most sites at which one effect is fitted for its directed tests"
     )
+    first_effects: int = numerical(
+        2,
+        "effects",
+        "best single effects to which a second one is added where none of them "
+        "explains the hits",
+        "a pair of effects of one size leads by one of them",
+    )
     longer_fits: int = numerical(
         5, "fits", "fits carried to a longer window", "a prototype on 24 campaigns"
     )
@@ -246,6 +253,46 @@ class StructureSettings:
         "-",
         "squared length below which a direction of a hit reaches no row",
         "far below the rounding of a direction",
+    )
+    surface_radius: float = numerical(
+        0.065,
+        "m",
+        "distance of the nodes that show the surface around a sensor or hammer point",
+        "sensors and marks are misplaced by up to 5 cm; a polynomial of degree 8 "
+        "follows a wave of 14 cm to 1e-4 there",
+    )
+    surface_degree: int = numerical(
+        8, "-", "highest degree of the polynomial of a mode shape on it"
+    )
+    surface_nodes: int = numerical(
+        20,
+        "nodes",
+        "fewest nodes on it: with two for each term, the shape is cubic",
+        "fewer show no more than the derivatives do",
+    )
+    surface_apart: float = numerical(
+        5e-4,
+        "m",
+        "distance of a node from the surface, and least extent of it",
+        "places are stated in whole millimetres",
+    )
+    surface_rank: float = numerical(
+        1e-8,
+        "of the largest",
+        "singular value below which terms of the polynomial depend on each other",
+        "square root of rounding",
+    )
+    mark_sd: float = numerical(
+        2.5,
+        "sd of the aim",
+        "mean offset of the hits of a point from which its mark may be misplaced",
+        "the mean of a dozen hits has a third of the sd of one",
+    )
+    mark_starts: tuple[float, ...] = numerical(
+        (1.0, 1.5, 2.5),
+        "of the mean offset",
+        "distances of the mark from which fits start",
+        "the prior of the aim draws the offsets found to the mark",
     )
     constraint_rank: float = numerical(
         1e-9,

@@ -10,10 +10,6 @@ from jointbench.acquisition.basics.compiled import announced
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.diagnosis.diagnose import closest_of, effects_of
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.diagnosis.structure_search import (
-    StructureOutcome,
-    search_structure,
-)
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
 from jointbench.analysis.gap.judgement.fit_summaries import (
     deviations_from_priors,
@@ -32,11 +28,6 @@ from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress
-from jointbench.analysis.gap.structure_bench.hit_campaign import (
-    HitCampaign,
-    RejectedHit,
-)
-from jointbench.analysis.gap.structure_bench.joint_state import nominal_values
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
@@ -45,6 +36,15 @@ from jointbench.analysis.gap.structure_bench.structure_catalogue import (
     STRUCTURE_CATALOGUE,
 )
 from jointbench.analysis.gap.structure_bench.structure_effects import StructureEffect
+from jointbench.analysis.gap.structure_response.hit_campaign import (
+    HitCampaign,
+    RejectedHit,
+)
+from jointbench.analysis.gap.structure_response.joint_state import nominal_values
+from jointbench.analysis.gap.structure_search.structure_search import (
+    StructureOutcome,
+    search_structure,
+)
 
 OTHER_POINTS = (
     "hit a further point off the lines of symmetry, in the tangential direction as "

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
-from jointbench.analysis.gap.structure_bench.port_laws import LawForm, law_ports
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.port_laws import LawForm, law_ports
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 class LawForm(IntEnum):

@@ -8,22 +8,22 @@ import pytest
 from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_bench.base_layout import base_layout
-from jointbench.analysis.gap.structure_bench.closed_response import close
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.hit_frames import hit_frame
-from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model
-from jointbench.analysis.gap.structure_bench.joint_state import (
+from jointbench.analysis.gap.structure_response.base_layout import base_layout
+from jointbench.analysis.gap.structure_response.closed_response import close
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.hit_frames import hit_frame
+from jointbench.analysis.gap.structure_response.hit_response import HitModel, hit_model
+from jointbench.analysis.gap.structure_response.joint_state import (
     Attached,
     JointState,
     state_of,
 )
-from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
-from jointbench.analysis.gap.structure_bench.landing import (
+from jointbench.analysis.gap.structure_response.jointed_bodies import NominalBench
+from jointbench.analysis.gap.structure_response.landing import (
     landing_weights,
     point_columns,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import (
+from jointbench.analysis.gap.structure_response.port_laws import (
     LawForm,
     PortLaws,
     iwan_sliders,

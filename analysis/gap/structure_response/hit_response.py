@@ -7,29 +7,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.analysis.gap.structure_bench.acting_laws import acting_laws
-from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
-from jointbench.analysis.gap.structure_bench.closed_modes import closed_modes
-from jointbench.analysis.gap.structure_bench.closed_response import (
+from jointbench.analysis.gap.structure_response.acting_laws import acting_laws
+from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_response.closed_modes import closed_modes
+from jointbench.analysis.gap.structure_response.closed_response import (
     Closure,
     close,
     response_slopes,
 )
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_bench.hit_frames import HitFrame
-from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.landing import (
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.hit_frames import HitFrame
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.landing import (
     COLUMNS,
     landing_slopes,
     landing_weights,
     point_columns,
 )
-from jointbench.analysis.gap.structure_bench.port_integration import (
+from jointbench.analysis.gap.structure_response.port_integration import (
     averaging,
     integrate_laws,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import LawForm, law_ports
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.port_laws import LawForm, law_ports
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -202,7 +202,7 @@ def hit_model(
         fine: True for the time integration of what is judged, not of fits.
     """
     bodies = campaign.bodies
-    columns = [point_columns(p) for p in bodies.points]
+    columns = [point_columns(p) for p in state.points_of(bodies)]
     if state.laws:
         rows = bodies.bolts.reshape(-1, bodies.omega.size)
         columns.append(rows[list(law_ports(state.laws))])
@@ -261,7 +261,8 @@ def law_forces(
     raw = np.zeros((len(hits.raw_force), length))
     known = min(length, hits.raw_force.shape[1])
     raw[:, :known] = hits.raw_force[:, :known]
-    shapes = np.stack([point_columns(p) for p in bodies.points])[hits.point]
+    struck = [point_columns(p) for p in state.points_of(bodies)]
+    shapes = np.stack(struck)[hits.point]
     columns = np.einsum("rc,rcn->rn", weights, shapes)
     ports = len(law_ports(state.laws))
     preload = hits.torque / campaign.nominal.torque_reference

@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 from hit_campaigns import Hidden, write_campaign
 
-from jointbench.analysis.gap.diagnosis.structure_fits import accept_structure
-from jointbench.analysis.gap.diagnosis.structure_search import (
-    UNTESTED,
-    JudgedFit,
-    StructureOutcome,
-    needless,
-    search_structure,
-)
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
+from jointbench.analysis.gap.structure_search.structure_fits import accept_structure
+from jointbench.analysis.gap.structure_search.structure_search import (
+    UNTESTED,
+    StructureOutcome,
+    needless,
+    search_structure,
+)
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 

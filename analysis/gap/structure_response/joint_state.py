@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.gap.structure_bench.base_layout import (
+from jointbench.analysis.gap.structure_response.base_layout import (
     BaseLayout,
     BaseName,
     loss_name,
@@ -18,12 +18,13 @@ from jointbench.analysis.gap.structure_bench.base_layout import (
     modulus_name,
     stiffness_name,
 )
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
     NORMAL,
+    HitPoint,
     JointedBodies,
     NominalBench,
 )
-from jointbench.analysis.gap.structure_bench.port_laws import PortLaws
+from jointbench.analysis.gap.structure_response.port_laws import PortLaws
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +87,7 @@ class JointState:
             bolts [m/N], shape (n_bolts, n_bolts); None for none.
         sensors: motion along each sensor, shape (n_channels, n_modes); None for that
             of the bodies.
+        points: hammer points; None for those of the bodies.
         cables: resonances in the signals of channels.
         tuning: factor on the natural frequency of each free mode [-], shape
             (n_modes,).
@@ -110,6 +112,7 @@ class JointState:
     damping_exponent: float = 0.0
     rocking: FloatArray | None = None
     sensors: FloatArray | None = None
+    points: tuple[HitPoint, ...] | None = None
     cables: tuple[CableResonance, ...] = ()
     attached: tuple[Attached, ...] = ()
     laws: tuple[PortLaws, ...] = ()
@@ -123,6 +126,14 @@ class JointState:
         """Return the natural angular frequencies of the free modes [rad/s]."""
         root = np.sqrt(self.modulus)[bodies.body]
         return np.asarray(bodies.omega * root * self.tuning)
+
+    def sensors_of(self, bodies: JointedBodies) -> FloatArray:
+        """Return the motion along each sensor, shape (n_channels, n_modes)."""
+        return bodies.sensors if self.sensors is None else self.sensors
+
+    def points_of(self, bodies: JointedBodies) -> tuple[HitPoint, ...]:
+        """Return the hammer points where hits aim."""
+        return bodies.points if self.points is None else self.points
 
     def at_torque(self, ratio: float) -> "JointState":
         """Return the state with the damping of a torque.

@@ -20,9 +20,9 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
-from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 def one_of_each(hits: HitRecords) -> IntArray:

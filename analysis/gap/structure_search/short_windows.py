@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""Fits of one more effect in the first milliseconds, where records show it in phase."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.effect import Candidate, words_of
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.candidate_starts import CandidateFit, along
+from jointbench.analysis.gap.search.descent import cost_at, minimise
+from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
+from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+
+SHORT = Resolution(STRUCTURE.base_windows[1])
+LONGER = Resolution(STRUCTURE.base_windows[2])
+
+
+def tested(few: StructureBench, near: Fit) -> Screening:
+    """Run the directed tests of every effect that may be added to a fit.
+
+    Args:
+        few: one record of each condition.
+        near: fit in the short window, with or without effects.
+    """
+    others = [c for c in few.candidates if few.may_add(c, near.candidates)]
+    return screen(few, near, others, resolution=SHORT)
+
+
+def carried(
+    few: StructureBench, near: Fit, screening: Screening, progress: Progress
+) -> list[Fit]:
+    """Fit candidates in short windows, then the best of them in longer ones.
+
+    A descent ends where it would hardly reach the best one so far.
+
+    Args:
+        few: one record of each condition.
+        near: fit in the short window to which one effect is added.
+        screening: directed tests of that fit.
+        progress: receives one line for each fit.
+
+    Returns:
+        Fits in the longer window, best first.
+    """
+    fits: list[Fit] = []
+    rival: float | None = None
+    for candidate in _chosen(few, near, screening):
+        progress(f"{words_of((*near.candidates, candidate))} in a short window")
+        starts = _starts(few, near, screening, candidate)
+        found = [
+            minimise(
+                s.problem,
+                s.x,
+                SHORT,
+                iterations=STRUCTURE.short_iterations,
+                rival=rival,
+                exact_slopes=False,
+            )
+            for s in starts[: STRUCTURE.starts_kept]
+        ]
+        fits += sorted(found, key=lambda f: f.cost)[:1]
+        rival = min(f.cost for f in fits)
+    fits.sort(key=lambda f: score(few, f))
+    longer: list[Fit] = []
+    rival = None
+    for fit in fits[: STRUCTURE.longer_fits]:
+        progress(f"{words_of(fit.candidates)} in a longer window")
+        own = few.at(fit.base, fit.terms, few.landing, few.floor)
+        longer.append(
+            minimise(
+                make_problem(own, fit.candidates),
+                fit.x,
+                LONGER,
+                iterations=STRUCTURE.longer_iterations,
+                rival=rival,
+                exact_slopes=False,
+            )
+        )
+        rival = min(f.cost for f in longer)
+    return sorted(longer, key=lambda f: score(few, f))
+
+
+def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candidate]:
+    """Return the leaders of the directed tests, and those that are always tried.
+
+    An effect leads at a few sites at most, else one that follows any residual would
+    fill all places.
+    """
+    always = {e.effect.name for e in few.entries if e.always}
+    free = [c for c in few.candidates if few.may_add(c, near.candidates)]
+    chosen = [c for c in free if c.effect.name in always or few.hints(near, c)]
+    others: list[Candidate] = []
+    for c in screening.leaders(len(few.candidates)):
+        same = sum(c.effect.name == one.effect.name for one in others)
+        if c not in chosen and same < STRUCTURE.leading_sites:
+            others.append(c)
+    return others[: STRUCTURE.leaders] + chosen
+
+
+def _starts(
+    few: StructureBench, near: Fit, screening: Screening, candidate: Candidate
+) -> list[CandidateFit]:
+    """Return starts of a candidate, best first: along its tests, and far ones."""
+    problem = make_problem(few, (*near.candidates, candidate))
+    starts = [along(problem, near, d, SHORT) for d in screening.best(candidate, 2)]
+    for tail in (*_far(candidate), *few.hints(near, candidate)):
+        for base in (np.zeros_like(near.base), near.base):
+            x = np.concatenate([base, near.x[near.n_base :], tail])
+            starts.append(CandidateFit(problem, x, cost_at(problem, x, SHORT)))
+    return sorted(starts, key=lambda s: s.cost)
+
+
+def _far(candidate: Candidate) -> list[FloatArray]:
+    """Return starts of a strong effect, where its directed test misleads."""
+    first = candidate.effect.parameters[0]
+    return [
+        np.array([first.encode(amplitude), *shape[1:]])
+        for amplitude in first.far
+        for shape in start_grid(candidate)
+    ]
