@@ -26,6 +26,7 @@ from jointbench.analysis.gap.contact_bench.contact_bench import (
 )
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
+    MORE_STATES,
     ContactDiagnosis,
     conclude_contact,
     too_few,
@@ -356,7 +357,8 @@ def _separating(several: SeveralCauses) -> str:
 def _experiment(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> str:
     contact = found.contact.found.experiment
     if found.several is not None and found.several.rivals:
-        contact = _separating(found.several) or contact
+        # What was ranked separates single effects, which do not explain the joint.
+        contact = _separating(found.several) or MORE_STATES
     steps = {
         ChainLink.SURFACE: found.chain.surface.experiment,
         ChainLink.STRUCTURE: found.chain.structure.experiment,
