@@ -90,6 +90,18 @@ def test_an_effect_vanishes_where_it_is_off(bench: StructureBench, name: str) ->
     assert _finite(bench, candidate, shape)
 
 
+def test_errors_of_a_table_weigh_as_few_numbers(bench: StructureBench) -> None:
+    """Neither hits nor samples average them out; masses scale what they spoil."""
+    nominal = replace(bench.campaign.nominal, table_sd=(0.005, 0.02))
+    uncertain = make_structure_bench(replace(bench.campaign, nominal=nominal))
+    records, _, count = bench.campaign.hits.response.shape
+    modes = len(uncertain.layout.tuned)
+    assert bench.coherence == 1.0
+    assert uncertain.coherence == pytest.approx(records / 2 * count / (2 * modes))
+    known = dict(zip(uncertain.base_names, uncertain.base_sd, strict=True))
+    assert known["mass top"] == pytest.approx(np.hypot(0.001, 0.02))
+
+
 def test_what_is_not_integrated_in_time_is_not_paired_with_a_law(
     bench: StructureBench,
 ) -> None:
