@@ -77,7 +77,7 @@ class ExportedJoint:
         source: model with the identified values.
         joint: its pieces, values and frequencies.
         files: that were written, in the order written.
-        page: HTML with the drawing.
+        report: HTML with the drawing.
         apart: relative difference of the natural frequencies in CalculiX, infinite
             where one is missing; None where it was not asked for.
     """
@@ -85,7 +85,7 @@ class ExportedJoint:
     source: ExportSource
     joint: JointExport
     files: tuple[WrittenFile, ...]
-    page: Path
+    report: Path
     apart: FloatArray | None
 
     @property
@@ -136,9 +136,9 @@ def exported_joint(
             write_text(path, deck)
             files = (*files, WrittenFile(path, "the whole model, to be run", None))
     apart = calculix_apart(source, deck) if request.check else None
-    page = folder / f"{joint.name}.html"
-    write_joint_page(page, joint, files, _frequencies(joint, apart))
-    return ExportedJoint(source, joint, files, page, apart)
+    report = folder / f"{joint.name}.html"
+    write_joint_page(report, joint, files, _frequencies(joint, apart))
+    return ExportedJoint(source, joint, files, report, apart)
 
 
 def calculix_apart(source: ExportSource, deck: str) -> FloatArray:

@@ -48,8 +48,8 @@ class JointFiles(Shown):
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """Files that were written, the page with the drawing last."""
-        return (*(one.path for one in self.result.files), self.result.page)
+        """Files that were written, the report with the drawing last."""
+        return (*(one.path for one in self.result.files), self.result.report)
 
     @property
     def faithful(self) -> bool:
