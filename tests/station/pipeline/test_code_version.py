@@ -78,7 +78,7 @@ def test_imports_are_found_as_the_parser_finds_them(stage: str) -> None:
 
 @cache
 def parsed_imports(name: str) -> frozenset[str]:
-    """Return the modules of ours that a module imports; stages share most of them."""
+    """Return the product modules that a module imports; stages share most of them."""
     source = code_version.source_of(name)
     assert source is not None, name
     wanted: set[str] = set()
