@@ -130,7 +130,7 @@ class StructureBench:
         points = np.unique(self.campaign.hits.point).size
         records, _, count = self.campaign.hits.response.shape
         modes = max(len(self.layout.tuned), 1)
-        return records / points * max(count / (2 * modes), 1.0)
+        return float(records / points * max(count / (2 * modes), 1.0))
 
     @property
     def expanded(self) -> bool:
