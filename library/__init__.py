@@ -11,9 +11,9 @@
     modes.to_xarray()               # labelled arrays with units
 
 Each function takes files or records and returns a record; nothing is printed, and
-only `example`, `record`, `process` and `report` write files. Errors are those of
-`jointbench.acquisition.basics.errors`: one line with the cause and a remedy. The
-functions load their modules at the first call, so that the import costs nothing.
+only `example`, `export_joint`, `record`, `process` and `report` write files. Errors are
+those of `jointbench.acquisition.basics.errors`: one line with the cause and a remedy.
+The functions load their modules at the first call, so that the import costs nothing.
 """
 
 from importlib import import_module
@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from jointbench.station.library.gaps import gap
     from jointbench.station.library.hit_results import hits
     from jointbench.station.library.identified_joints import identify
+    from jointbench.station.library.joint_agreements import agreement
     from jointbench.station.library.joint_designs import design
+    from jointbench.station.library.joint_exports import export_joint
     from jointbench.station.library.joint_pressures import pressure
     from jointbench.station.library.machines import machine
     from jointbench.station.library.measurements import open_measurement as open  # noqa: A004
@@ -40,11 +42,13 @@ if TYPE_CHECKING:
     from jointbench.station.library.surface_fits import surface
 
 _PLACES = {
+    "agreement": ("joint_agreements", "agreement"),
     "archive": ("archives", "archive"),
     "contact": ("contact_laws", "contact"),
     "design": ("joint_designs", "design"),
     "desk": ("desks", "desk"),
     "example": ("example_files", "example"),
+    "export_joint": ("joint_exports", "export_joint"),
     "frf": ("frf_results", "frf"),
     "gap": ("gaps", "gap"),
     "hits": ("hit_results", "hits"),
@@ -60,11 +64,13 @@ _PLACES = {
     "surface": ("surface_fits", "surface"),
 }
 __all__ = [
+    "agreement",
     "archive",
     "contact",
     "design",
     "desk",
     "example",
+    "export_joint",
     "frf",
     "gap",
     "hits",

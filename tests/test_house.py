@@ -7,6 +7,7 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -51,22 +52,62 @@ def sources(room: str) -> list[Path]:
     return sorted((ROOT / room).rglob("*.py"))
 
 
-@cache
-def tree(path: Path) -> ast.Module:
-    """Return the syntax tree of a module, which many tests look at."""
-    return ast.parse(path.read_text(encoding="utf-8"))
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """What the tests look at in a module; its syntax tree is walked once.
+
+    Attributes:
+        imported: absolute names that it imports anywhere.
+        members: names that it imports from each of them, with the module in front.
+        classes: that it defines anywhere.
+        parameters: how many a function declares, starred ones included, by its name.
+        names: that stand in an expression or get a value anywhere.
+        assigned: constants at the top, one for each assignment.
+        defined: functions and classes at the top.
+    """
+
+    imported: frozenset[str]
+    members: frozenset[str]
+    classes: frozenset[str]
+    parameters: tuple[tuple[str, int], ...]
+    names: frozenset[str]
+    assigned: tuple[str, ...]
+    defined: frozenset[str]
 
 
 @cache
+def outline(path: Path) -> Outline:
+    """Return the outline of a module."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    imported_, members, classes, names = set(), set(), set(), set()
+    parameters = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            names.add(node.id)
+        elif isinstance(node, ast.Import):
+            imported_ |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            imported_.add(node.module)
+            members |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            parameters.append((node.name, parameters_of(node)))
+        elif isinstance(node, ast.ClassDef):
+            classes.add(node.name)
+    tops = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    return Outline(
+        frozenset(imported_),
+        frozenset(members),
+        frozenset(classes),
+        tuple(parameters),
+        frozenset(names),
+        tuple(name for node in tree.body for name in assigned(node)),
+        frozenset(node.name for node in tree.body if isinstance(node, tops)),
+    )
+
+
 def imported(path: Path) -> frozenset[str]:
     """Return the absolute names that a module imports anywhere."""
-    names: set[str] = set()
-    for node in ast.walk(tree(path)):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names.add(node.module)
-    return frozenset(names)
+    return outline(path).imported
 
 
 def modules() -> dict[str, Path]:
@@ -82,10 +123,7 @@ def imported_modules(path: Path, known: Collection[str]) -> set[str]:
     `from package import name` may mean a module of the package or a name in it, so
     both are looked up; importing a module also imports the packages that hold it.
     """
-    names = set(imported(path))
-    for node in ast.walk(tree(path)):
-        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    names = outline(path).imported | outline(path).members
     parts = [name.split(".") for name in names]
     holders = {".".join(p[:k]) for p in parts for k in range(1, len(p) + 1)}
     return holders & set(known)
@@ -182,11 +220,10 @@ def callbacks() -> set[str]:
 def test_no_function_has_more_than_eight_parameters(room: str) -> None:
     """What belongs together is one record; callbacks have a parameter an option."""
     over = {
-        f"{path.relative_to(ROOT).as_posix()}:{node.name}"
+        f"{path.relative_to(ROOT).as_posix()}:{name}"
         for path in sources(room)
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-        and parameters_of(node) > MOST_PARAMETERS
+        for name, count in outline(path).parameters
+        if count > MOST_PARAMETERS
     }
     assert over <= callbacks()
 
@@ -210,11 +247,7 @@ def assigned(node: ast.stmt) -> Iterator[str]:
 
 def public_names(path: Path) -> set[str]:
     """Return the constants, functions and classes that a module offers."""
-    names: set[str] = set()
-    for node in tree(path).body:
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            names.add(node.name)
-        names.update(assigned(node))
+    names = outline(path).defined | set(outline(path).assigned)
     return {name for name in names if not name.startswith("_")}
 
 
@@ -236,12 +269,7 @@ def test_every_folder_of_modules_is_packaged() -> None:
 def test_a_class_name_stands_in_one_file_and_a_file_name_in_one_folder() -> None:
     """One name for one thing: who searches for it finds one place."""
     paths = [path for room in ROOMS for path in sources(room)]
-    classes = {
-        (node.name, path)
-        for path in paths
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.ClassDef)
-    }
+    classes = {(name, path) for path in paths for name in outline(path).classes}
     files = Counter(path.name for path in paths)
     places = Counter(name for name, _ in classes)
     assert not [name for name, n in (files + places).items() if n > 1]
@@ -261,12 +289,7 @@ def test_few_modules_offer_more_than_eight_names() -> None:
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_module_takes_its_local_names_as_data(room: str) -> None:
     """Options that pass through `locals()` are not checked."""
-    called = [
-        path.name
-        for path in sources(room)
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.Name) and node.id == "locals"
-    ]
+    called = [path.name for path in sources(room) if "locals" in outline(path).names]
     assert not called
 
 
@@ -297,9 +320,7 @@ def test_no_module_assigns_a_name_twice() -> None:
         f"{path.relative_to(ROOT)}: {name}"
         for room in ROOMS
         for path in sources(room)
-        for name, count in Counter(
-            name for node in tree(path).body for name in assigned(node)
-        ).items()
+        for name, count in Counter(outline(path).assigned).items()
         if count > 1
     ]
     assert found == []

@@ -75,6 +75,8 @@ class Identification:
         verdict: how far the parameters are determined.
         reasons: one line for each basis of the verdict.
         parameters: stiffness and damping of every identified link.
+        log_covariance: of ln parameters in their order, enlarged like their sd; large
+            where undetermined; shape (n_parameters, n_parameters).
         solutions: all distinct solutions, the best first.
         measured_frequency: [Hz], shape (n_modes,).
         energy_share: part of each mode's strain energy in each link of the best
@@ -87,6 +89,7 @@ class Identification:
     verdict: IdentificationVerdict
     reasons: tuple[str, ...]
     parameters: tuple[JointParameter, ...]
+    log_covariance: FloatArray
     solutions: tuple[Solution, ...]
     measured_frequency: FloatArray
     energy_share: FloatArray
@@ -95,7 +98,7 @@ class Identification:
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "measured_frequency", "energy_share")
+        freeze(self, "log_covariance", "measured_frequency", "energy_share")
 
     def parameter(self, name: str) -> JointParameter:
         """Return the parameter called `name`.
@@ -126,7 +129,7 @@ def identification_json(result: Identification) -> dict[str, Any]:
 
     Returns:
         ``parameters`` {name: {value, sd, interval_95, unit, identifiable, reason}},
-        ``solutions``,
+        ``log_covariance`` of their logarithms in the same order, ``solutions``,
         ``verdict``, ``reasons``, ``modes``; nothing in it is NaN or infinite.
     """
     best = result.solutions[0]
@@ -134,6 +137,7 @@ def identification_json(result: Identification) -> dict[str, Any]:
         "verdict": result.verdict.value,
         "reasons": list(result.reasons),
         "parameters": {one.name: parameter_json(one) for one in result.parameters},
+        "log_covariance": result.log_covariance.tolist(),
         "solutions": [
             {
                 "parameters": dict(one.parameters),

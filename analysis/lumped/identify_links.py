@@ -108,6 +108,7 @@ def identify_links(
         verdict=verdict,
         reasons=reasons,
         parameters=parameters,
+        log_covariance=_log_covariance(problem, best, scale),
         solutions=(
             *(_solution(problem, one, True) for one in [best, *rivals[:_LISTED]]),
             *(_solution(problem, one, False) for one in fallen[:_LISTED]),
@@ -185,6 +186,19 @@ def _spreads(problem: JointProblem, end: LinkOptimum, scale: float) -> FloatArra
     # The unknowns are ln stiffness and scaled damping: back to physical numbers.
     unit = np.where(np.arange(sd.size) < problem.stiff.size, values, 0.0)
     return np.asarray(sd * np.where(unit > 0, unit, problem.damping_scale))
+
+
+def _log_covariance(
+    problem: JointProblem, end: LinkOptimum, scale: float
+) -> FloatArray:
+    """Return the covariance of ln parameters around a solution."""
+    damping = _values(problem, end.unknowns)[problem.stiff.size :]
+    # Where a damping may be zero its logarithm is open: the sd is limited.
+    least = _spreads(problem, end, scale)[problem.stiff.size :] / _NO_SD
+    unit = np.ones(problem.stiff.size + damping.size)
+    unit[problem.stiff.size :] = problem.damping_scale / np.maximum(damping, least)
+    own = scale * end.covariance()[: unit.size, : unit.size]
+    return np.asarray(own * np.multiply.outer(unit, unit))
 
 
 def _interval(

@@ -43,7 +43,7 @@ from jointbench.simulators.rough_surfaces.profilometer import (
     measure_areal,
 )
 from jointbench.station.chain.surface_reading import surface_law
-from jointbench.station.gap.joint_state_files import joint_facts
+from jointbench.station.joint_states.joint_state_files import joint_facts
 from jointbench.station.schemas.bolted_joint_table import BoltedLinkTable
 from jointbench.station.sources.campaign_model import joint_table
 

@@ -23,11 +23,11 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.contact_bench.contact_bench import make_contact_bench
 from jointbench.analysis.gap.contact_bench.held_out_torques import HeldOutTorques
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
     ContactDiagnosis,
     diagnose_contact,
 )
-from jointbench.analysis.gap.diagnosis.contact_search import (
+from jointbench.analysis.gap.law_diagnosis.contact_search import (
     fit_contact_base,
     fit_effect,
 )

@@ -21,7 +21,7 @@ from jointbench.analysis.gap.contact_bench.preload_laws import (
     FractalPreloadLaw,
     fractal_parameters,
 )
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import diagnose_contact
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.model.effect import Candidate, Term
 
 MODULUS = effective_modulus(55e9, 0.25, 55e9, 0.25)

@@ -22,16 +22,16 @@ from outcomes import NAMEABLE, share_text
 from surface_maker import LINE_EFFECTS, MadeSurface, make_surface
 
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.gap.law_diagnosis.surface_diagnosis import diagnose_surface
+from jointbench.analysis.gap.law_diagnosis.surface_search import (
+    fit_one_more,
+    fit_surface,
+)
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.selection_round import score
 from jointbench.analysis.gap.surface_bench.predicted_structure import expected_rows
 from jointbench.analysis.gap.surface_bench.surface_bench import make_surface_bench
-from jointbench.analysis.gap.surface_bench.surface_diagnosis import diagnose_surface
 from jointbench.analysis.gap.surface_bench.surface_rows import surface_rows
-from jointbench.analysis.gap.surface_bench.surface_search import (
-    fit_one_more,
-    fit_surface,
-)
 
 Run = dict[str, Any]
 KINDS = ("", *LINE_EFFECTS)

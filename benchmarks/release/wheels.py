@@ -5,8 +5,9 @@
 
 Nothing is installed: for each system and version of Python, pip resolves what the
 project needs and refuses sources. Each extra is resolved by itself, with the newest
-version of Python. The page gets the tables between its marks; without `--page` they
-are printed. Run it with a Python that has pip.
+version of Python; so are the dependencies of some systems only. The page gets the
+tables between its marks; without `--page` they are printed. Run it with a Python that
+has pip and packaging.
 """
 
 import argparse
@@ -16,15 +17,49 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from packaging.requirements import Requirement
+
 ROOT = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A system that wheels are asked for.
+
+    Attributes:
+        tags: of its wheels, the newest first.
+        platform: `sys_platform` of its Python.
+        machine: `platform_machine` of its Python.
+    """
+
+    tags: tuple[str, ...]
+    platform: str
+    machine: str
+
+    def needs(self, wanted: str) -> bool:
+        """Return whether a dependency is one here; pip asks where it runs itself."""
+        marker = Requirement(wanted).marker
+        here = {"sys_platform": self.platform, "platform_machine": self.machine}
+        return marker is None or marker.evaluate(here)
+
+
+def _linux(machine: str) -> System:
+    tags = tuple(f"manylinux_2_{n}_{machine}" for n in (28, 27, 24, 17))
+    return System(tags, "linux", machine)
+
+
 SYSTEMS = {
-    "Linux x86-64": tuple(f"manylinux_2_{n}_x86_64" for n in (28, 27, 24, 17)),
-    "Linux arm64": tuple(f"manylinux_2_{n}_aarch64" for n in (28, 27, 24, 17)),
-    "macOS arm64": ("macosx_14_0_arm64", "macosx_12_0_arm64", "macosx_11_0_arm64"),
-    "Windows x86-64": ("win_amd64",),
+    "Linux x86-64": _linux("x86_64"),
+    "Linux arm64": _linux("aarch64"),
+    "macOS arm64": System(
+        ("macosx_14_0_arm64", "macosx_12_0_arm64", "macosx_11_0_arm64"),
+        *("darwin", "arm64"),
+    ),
+    "Windows x86-64": System(("win_amd64",), "win32", "AMD64"),
 }
 PYTHONS = ("3.11", "3.12", "3.13")
 PRODUCT = (
@@ -35,14 +70,17 @@ PRODUCT = (
 BEGIN, END = "<!-- wheels -->\n", "<!-- end of wheels -->\n"
 
 
-def resolve(tags: tuple[str, ...], python: str, wanted: list[str]) -> tuple[int, str]:
+def resolve(system: System, python: str, wanted: list[str]) -> tuple[int, str]:
     """Return the number of wheels on a system, and the error of pip."""
+    wanted = [one.partition(";")[0] for one in wanted if system.needs(one)]
+    if not wanted:
+        return 0, "none needed"
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         command = [sys.executable, "-m", "pip", "install", "--dry-run", "--quiet"]
         command += ["--ignore-installed", "--only-binary=:all:", "--target", folder]
         command += ["--report", str(report), "--python-version", python]
-        command += [word for tag in tags for word in ("--platform", tag)]
+        command += [word for tag in system.tags for word in ("--platform", tag)]
         done = subprocess.run(
             [*command, *wanted], capture_output=True, text=True, check=False
         )
@@ -63,18 +101,31 @@ def tables() -> Iterator[tuple[str, bool]]:
     yield f"| system | {' | '.join(f'Python {one}' for one in PYTHONS)} |", False
     yield "|---" * (len(PYTHONS) + 1) + "|", False
     base = list(project["dependencies"])
-    for system, tags in SYSTEMS.items():
-        found = [resolve(tags, python, base) for python in PYTHONS]
+    for name, system in SYSTEMS.items():
+        found = [resolve(system, python, base) for python in PYTHONS]
         cells = " | ".join(words or str(count) for count, words in found)
-        yield f"| {system} | {cells} |", any(words for _, words in found)
+        yield f"| {name} | {cells} |", any(words for _, words in found)
+    yield from _apart(base)
     yield f"\nExtras, with Python {PYTHONS[-1]}:\n", False
     yield f"| extra | {' | '.join(SYSTEMS)} |", False
     yield "|---" * (len(SYSTEMS) + 1) + "|", False
     for extra in PRODUCT:
         wanted = project["optional-dependencies"][extra]
-        found = [resolve(tags, PYTHONS[-1], wanted) for tags in SYSTEMS.values()]
+        found = [resolve(one, PYTHONS[-1], wanted) for one in SYSTEMS.values()]
         cells = " | ".join(words or str(count) for count, words in found)
         yield f"| `{extra}` | {cells} |", False
+
+
+def _apart(base: list[str]) -> Iterator[tuple[str, bool]]:
+    """Yield the table of dependencies that not every system needs."""
+    yield f"\nDependencies of some systems only, with Python {PYTHONS[-1]}:\n", False
+    yield f"| dependency | {' | '.join(SYSTEMS)} |", False
+    yield "|---" * (len(SYSTEMS) + 1) + "|", False
+    for one in base:
+        if Requirement(one).marker is not None:
+            found = [resolve(system, PYTHONS[-1], [one]) for system in SYSTEMS.values()]
+            cells = " | ".join(words or str(count) for count, words in found)
+            yield f"| `{Requirement(one).name}` | {cells} |", False
 
 
 def main() -> int:

@@ -26,6 +26,8 @@ HEADINGS = {
     "verdicts": "Verdicts: `python -m benchmarks.surface.verdicts --seeds N`",
     "band-limited": "Band-limited surfaces drawn by Cholesky factors, 3,000 points: "
     "`python -m benchmarks.surface.band_limited --count N --seed N --log PATH`",
+    "lay": "Maps with a lay: "
+    "`python -m benchmarks.surface.lay --count 20 --seed N --log PATH`",
     "kinds": "Names of machined surfaces: "
     "`python -m benchmarks.surface.kinds --count N --seed N`",
     "filters": "Filters that the instrument states: "

@@ -5,8 +5,9 @@ python -m benchmarks.surface.stated_filters --count 40 --seed N prints a table. 
 self-affine profiles are traced by a round tip on points four times as dense, or
 filtered by Gaussian weights in the time domain; the fit knows the radius or the
 cut-off. Of a tip the deviation is that of the blur which the heights show without the
-tip as a prior, from the stated one; of a cut-off that of H. Tips are as stated, or
-within 25 % of it, the tolerance of 2 um in ISO 3274.
+tip as a prior, from the stated one, over the scatter of both; of a cut-off that of H.
+Tips are as stated, which leaves less than one standard deviation since that includes
+an error of the radius, or within 25 % of it, the tolerance of 2 um in ISO 3274.
 """
 
 import argparse

@@ -38,8 +38,8 @@ for row in sorted(rows, key=lambda one: one.day):
     print(f"{day}  {row.value:.3f} ± {row.sd:.3f} Hz")
 
 # %% [markdown]
-# It falls: the joint has lost about 1 % of its stiffness a month. `jointbench archive ... --trend day` fits the trend
-# and tests it.
+# It falls: the joint has lost about 1 % of its stiffness a month. `jointbench archive ... --trend day` fits it at
+# each torque and tests it.
 
 # %%
 archive.write("all.csv")

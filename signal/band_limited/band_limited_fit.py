@@ -40,7 +40,7 @@ from jointbench.signal.band_limited.roughness_moments import (
 )
 from jointbench.signal.band_limited.scoring_search import Maximum, maximise
 from jointbench.signal.band_limited.spectral_likelihood import SpectralLikelihood
-from jointbench.signal.band_limited.tip_width import tip_surprise
+from jointbench.signal.band_limited.tip_width import tip_deviation, tip_surprise
 from jointbench.signal.band_limited.weighted_draws import WeightedDraws, draw
 
 _STARTS = (0.02, 0.3)
@@ -149,7 +149,11 @@ def _both(likelihood: SpectralLikelihood, near: FloatArray | None = None) -> _Fo
 def _models(
     likelihood: SpectralLikelihood, starts: list[FloatArray], free: BoolArray
 ) -> tuple[Maximum, ...]:
-    """Return the maxima without blur and noise, with either, and with both."""
+    """Return the maxima without blur and noise, with either, and with both.
+
+    A blur or noise whose likeliest value is nothing counts as well: it may still be
+    there, and draws without it would leave its effect on curvature and H out.
+    """
     found: list[Maximum] = []
     # A stated tip acts on every trace.
     tip = likelihood.sample.transfer.tip is not None
@@ -162,9 +166,7 @@ def _models(
         best = max(tried, key=lambda one: one.value)
         if not found:
             starts = [np.append(best.parameters[:3], _SMALL)]
-        # A blur or noise of nothing is the model without it.
-        if not found or np.all(best.parameters[mask & ~_SURFACE] > 0):
-            found.append(best)
+        found.append(best)
     return tuple(found)
 
 
@@ -304,7 +306,14 @@ def _tip(found: _Found) -> float:
     bare = replace(found.likelihood, heeds_tip=False)
     mask = np.diag(found.best.information) > 0
     free = maximise(bare, found.best.parameters, mask)
-    return tip_surprise(bare.model(free.parameters), bare.sample)
+    covariance = np.zeros_like(free.information)
+    part = free.information[np.ix_(mask, mask)]
+    covariance[np.ix_(mask, mask)] = np.linalg.pinv(part, hermitian=True)
+
+    def surprise(at: FloatArray) -> float:
+        return tip_surprise(bare.model(at), bare.sample)
+
+    return tip_deviation(surprise, free.parameters, covariance)
 
 
 def _beyond(found: _Found) -> float:

@@ -52,6 +52,7 @@ from jointbench.signal.band_limited.roughness_moments import (
     cut_wavelength,
 )
 from jointbench.signal.band_limited.seen_bins import seen_bins
+from jointbench.signal.band_limited.tip_width import tip_deviation
 from jointbench.signal.band_limited.weighted_draws import WIDEST_ROLL_OFF
 from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 
@@ -341,7 +342,7 @@ def _tip(models: MapModels) -> float:
     likelihood = models.likelihood
     bare = MapLikelihood(likelihood.bins, likelihood.tolerance, heeds_tip=False)
     free = maximise_map(bare, models.best.parameters, models.best.free)
-    return bare.tip_surprise(free.parameters)
+    return tip_deviation(bare.tip_surprise, free.parameters, _covariance(free))
 
 
 def _beyond(models: MapModels) -> float:

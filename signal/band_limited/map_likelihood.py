@@ -284,6 +284,12 @@ def _steps(
 
 
 def _within(values: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Return values within their bounds; `numpy.clip` takes longer to be called."""
+    """Return values within their bounds, and the angle within half a turn.
+
+    Where the ratio is nearly 1 a step of the angle may be millions of turns, of which
+    rounding leaves no angle.
+    """
+    # `numpy.clip` takes longer to be called.
     within: FloatArray = np.minimum(np.maximum(values, lower), upper)
+    within[ANGLE] = math.remainder(float(within[ANGLE]), math.pi)
     return within

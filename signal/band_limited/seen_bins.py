@@ -19,17 +19,20 @@ from jointbench.signal.band_limited.map_sample import TAPER, MapSample
 from jointbench.signal.fractal.instrument_blur import tip_fall
 from jointbench.signal.surface.line_spectrum import fade
 
-_LAYS = 12
+_LAYS = 48
 """Directions over which densities beyond the images are averaged [-]."""
 _IMAGES = 8
-"""Images of the spectrum next to it [-]; the rest is an integral."""
+"""Images of the spectrum next to it [-], taken at each bin."""
+_FAR_RINGS = (2, 3)
+"""Rings of images beyond them, taken at the nodes; the rest is an integral."""
+_FAR = sum(8 * ring for ring in _FAR_RINGS)
+_NODES = (7, 11)
+"""Places along rows and columns between which far images are interpolated [-]: within
+1e-3 of the density, of the whole within 0.02 up to a ratio of 5."""
 _LONG = 9.0
 """Waves along the sides below which the taper smooths the density [-]."""
 _REACH = 2
 """Ordinates to each side over which it does [-]."""
-_NODES = (7, 11)
-"""Places along rows and columns between which images are interpolated [-]: within 1e-4
-of their sum."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,7 +149,9 @@ class SeenBins:
     """Where the density of a model is taken for the bins of a sample.
 
     All wavenumbers are in one array, which costs a fraction of four: those of the bins,
-    those about each long bin, the images of each node and the disc beyond the images.
+    those about each long bin, the images of each bin, further images of each node and
+    the disc beyond them. Images of a surface with a lay cross the bins as narrow
+    ridges: between a few nodes the next ones cannot be interpolated.
 
     Attributes:
         sample: the binned spectrum.
@@ -155,7 +160,7 @@ class SeenBins:
         square: x^2 + y^2, same shape.
         long: places of bins of few waves, which the taper smooths, shape (n_long,).
         weight: of the places about a long bin, shape (n_near,).
-        between: from the images at the nodes to those of the bins, shape
+        between: from the far images at the nodes to those of the bins, shape
             (n_bins, n_nodes).
         passed: share of the power that known filters pass, shape (n_bins,).
         cell: area of the wavenumbers that the grid resolves [rad^2/sample^2].
@@ -195,10 +200,12 @@ class SeenBins:
     def folded(self, values: FloatArray) -> FloatArray:
         """Return values at the places as the grid shows them, the disc left out."""
         bins, near = self.passed.size, self.weight.size
-        middle = values.size - _LAYS - _IMAGES * self.between.shape[1]
+        far = values.size - _LAYS - _FAR * self.between.shape[1]
+        middle = far - _IMAGES * bins
         seen = values[:bins].copy()
         seen[self.long] = values[bins:middle].reshape(-1, near) @ self.weight
-        seen += self.between @ values[middle:-_LAYS].reshape(_IMAGES, -1).sum(axis=0)
+        seen += values[middle:far].reshape(_IMAGES, bins).sum(axis=0)
+        seen += self.between @ values[far:-_LAYS].reshape(_FAR, -1).sum(axis=0)
         return seen
 
     def folded_rate(self, taken: TakenDensity, parameter: int) -> FloatArray:
@@ -242,16 +249,26 @@ def seen_bins(sample: MapSample) -> SeenBins:
     near = (np.abs(right) + np.abs(up) <= _REACH).ravel()
     kernel = [_smoothing(n) for n in sample.shape]
     weight = np.outer(kernel[0], kernel[1]).ravel()[near]
-    images, between = _images(sample)
+    images = _images(sample.along, sample.down, sample.stretch, (1,))
+    nodes, between = _nodes(sample)
+    far = _images(*nodes, sample.stretch, _FAR_RINGS)
     turn = np.pi * np.arange(_LAYS) / _LAYS
     cell = float(4 * np.pi**2 / sample.stretch)
-    edge = float(np.sqrt((1 + _IMAGES) * cell / np.pi))
+    edge = float(np.sqrt((1 + _IMAGES + _FAR) * cell / np.pi))
     about = (
         sample.along[long][:, None] + unit[0] * right.ravel()[near],
         sample.down[long][:, None] + unit[1] * up.ravel()[near],
     )
     x, y = (
-        np.concatenate([own, about[k].ravel(), images[k].T.ravel(), edge * part(turn)])
+        np.concatenate(
+            [
+                own,
+                about[k].ravel(),
+                images[k].ravel(),
+                far[k].ravel(),
+                edge * part(turn),
+            ]
+        )
         for k, (own, part) in enumerate(((sample.along, np.cos), (sample.down, np.sin)))
     )
     passed = sample.transfer.power(np.hypot(sample.along, sample.down))
@@ -277,20 +294,32 @@ def _smoothing(points: int) -> FloatArray:
     return square
 
 
-def _images(sample: MapSample) -> tuple[FloatArray, FloatArray]:
-    """Return images of nodes of Chebyshev, and the interpolation between the nodes."""
+def _images(
+    along: FloatArray, down: FloatArray, stretch: float, rings: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return images of places along rows and columns, each (n_images, n_places).
+
+    Args:
+        along: the places along the rows [rad/sample].
+        down: the same down the columns.
+        stretch: distance of the rows over that of the columns [-].
+        rings: of images, counted from the places themselves.
+    """
+    most = range(-max(rings), max(rings) + 1)
+    shift = [(k, j) for k in most for j in most if max(abs(k), abs(j)) in rings]
+    right, up = 2 * np.pi * np.array(shift).T[:, :, None] / [[[1]], [[stretch]]]
+    return along + right, down + up
+
+
+def _nodes(sample: MapSample) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
+    """Return nodes of Chebyshev, and the interpolation from them to the bins."""
     top = np.pi, np.pi / sample.stretch
     nodes = [np.cos(np.pi * (np.arange(n) + 0.5) / n) for n in _NODES]
     right, up = np.meshgrid(0.5 * top[0] * (1 + nodes[0]), top[1] * nodes[1])
-    shift = [(k, j) for k in (-1, 0, 1) for j in (-1, 0, 1) if k or j]
-    periods = 2 * np.array(shift) * top
-    images = np.stack(
-        [right.reshape(-1, 1) + periods[:, 0], up.reshape(-1, 1) + periods[:, 1]]
-    )
     across = _between(nodes[0], 2 * sample.along / top[0] - 1)
     down = _between(nodes[1], sample.down / top[1])
     between = (down[:, :, None] * across[:, None, :]).reshape(sample.along.size, -1)
-    return images, between
+    return (right.ravel(), up.ravel()), between
 
 
 def _between(nodes: FloatArray, places: FloatArray) -> FloatArray:

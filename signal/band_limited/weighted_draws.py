@@ -24,6 +24,8 @@ WIDEST_ROLL_OFF = 1.5
 _FREEDOM = 6.0
 """Degrees of freedom of the draws, for the tails of the likelihood [-]."""
 _LOW, _HIGH = 0.025, 0.975
+_BOUNDED = slice(3, 5)
+"""Places of blur and noise, which cannot be less than nothing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,18 +58,19 @@ def draw(likelihood: SpectralLikelihood, maxima: Sequence[Maximum]) -> WeightedD
 
     A model without blur or noise has the weight that Akaike's criterion gives it: with
     every parameter free, a flat prior on a blur and a noise that are not there would
-    move H.
+    move H. Where its likeliest blur or noise is nothing, the weight is in proportion
+    to what a likelihood that continues below nothing would have above it.
 
     Source:
         Weights of models: Buckland et al., Biometrics 53 (1997) 603.
     """
     best = max(one.criterion for one in maxima)
-    shares = [np.exp(one.criterion - best) for one in maxima]
-    pairs = [
-        (share, _about(likelihood, one))
-        for share, one in zip(shares, maxima, strict=True)
-        if share > _LEAST_SHARE
-    ]
+    pairs = []
+    for one in maxima:
+        share = float(np.exp(one.criterion - best))
+        if share > _LEAST_SHARE:
+            found, mass = _about(likelihood, one)
+            pairs.append((share * mass, found))
     return WeightedDraws(
         np.concatenate([found.parameters for _, found in pairs]),
         np.concatenate([share * found.weight for share, found in pairs])
@@ -75,8 +78,10 @@ def draw(likelihood: SpectralLikelihood, maxima: Sequence[Maximum]) -> WeightedD
     )
 
 
-def _about(likelihood: SpectralLikelihood, found: Maximum) -> WeightedDraws:
-    """Draw about one maximum.
+def _about(
+    likelihood: SpectralLikelihood, found: Maximum
+) -> tuple[WeightedDraws, float]:
+    """Draw about one maximum; return the draws and the weight they bear, see `draw`.
 
     The prior is flat in ln level, H, blur and noise within their bounds, and that of
     Jeffreys in the roll-off, see `roll_off_prior`.
@@ -106,17 +111,24 @@ def _about(likelihood: SpectralLikelihood, found: Maximum) -> WeightedDraws:
     parameters[:, free] += _WIDER * normal @ root.T
     lower, upper = np.array(likelihood.bounds).T
     inside = np.all((parameters >= lower) & (parameters <= upper), axis=1)
-    logs = np.full(DRAWS, -np.inf)
+    logs, points = np.full(DRAWS, -np.inf), likelihood.sample.points
     for k in np.flatnonzero(inside):
         model = likelihood.model(parameters[k])
-        prior = roll_off_prior(model, likelihood.sample.points)
+        prior = roll_off_prior(model, points)
         logs[k] = likelihood(parameters[k]) + prior
     squares = np.sum(normal**2, axis=1)
-    logs += 0.5 * (_FREEDOM + count) * np.log1p(squares / _FREEDOM)
+    proposed = 0.5 * (_FREEDOM + count) * np.log1p(squares / _FREEDOM)
+    logs += proposed
     if not np.isfinite(logs).any():
-        return WeightedDraws(found.parameters[None, :], np.ones(1))
+        return WeightedDraws(found.parameters[None, :], np.ones(1)), 1.0
     weight = np.exp(logs - logs.max())
-    return WeightedDraws(parameters, weight / weight.sum())
+    mass = 1.0
+    if np.any(found.parameters[_BOUNDED] <= lower[_BOUNDED], where=free[_BOUNDED]):
+        # Over the weights of a Gaussian likelihood without bounds at the same draws.
+        top = found.value + roll_off_prior(likelihood.model(found.parameters), points)
+        endless = np.exp(proposed - 0.5 * _WIDER**2 * squares)
+        mass = min(1.0, float(np.exp(logs - top).sum() / endless.sum()))
+    return WeightedDraws(parameters, weight / weight.sum()), mass
 
 
 def roll_off_prior(model: BandLimited, points: int) -> float:

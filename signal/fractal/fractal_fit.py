@@ -119,9 +119,10 @@ def fit_fractal(
     if not _worth_a_fit(rough.only(for_fit)):
         reason = _too_coarse(estimate) or _too_short(rough.only(for_fit))
         return rejected_fit(estimate, reason, _unfitted_slope(rough))
-    whole = pose(rough.only(for_slope))
-    problem = whole.within(for_fit[for_slope])
+    # The slope reaches further; its covariance is needed once, that of the fit often.
+    problem = pose(rough.only(for_fit))
     found, judgement = _search(problem)
+    whole = pose(rough.only(for_slope))
     slope = local_slope(whole.estimate, whole.scatter(found.fit.seen))
     if judgement is None:
         judgement = Judgement(

@@ -24,8 +24,9 @@ _TIP_BLURS = 16
 """Gaussian blurs that represent the path of a tip: S within 2e-3 at all lags [-]."""
 _TIP_TAILS = (1e-4, 1.0 - 1e-7)
 """Shares of them below the narrowest and the widest [-]."""
-_FRACTION_TERMS = 60
-"""Depth of the continued fraction; gives twelve digits from pi upwards [-]."""
+_FRACTION_TERMS = ((0.0, 60), (16.0, 12))
+"""Depths of the continued fraction from these arguments on [-]: twelve digits from pi
+upwards."""
 
 
 def blurred_power(
@@ -159,8 +160,14 @@ def _exponential_integral(
     order: float, argument: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
     """Return E_order(argument) by its continued fraction, for |argument| > 3."""
-    value = argument + order + 2 * _FRACTION_TERMS
-    for k in range(_FRACTION_TERMS, 0, -1):
-        value = argument + order + 2 * (k - 1) - k * (order + k - 1) / value
-    result: NDArray[np.complex128] = np.exp(-argument) / value
+    result = np.exp(-argument)
+    size = np.abs(argument)
+    ends = [*(first for first, _ in _FRACTION_TERMS[1:]), np.inf]
+    for (first, terms), end in zip(_FRACTION_TERMS, ends, strict=True):
+        part = (size >= first) & (size < end)
+        own = argument[part]
+        value = own + order + 2 * terms
+        for k in range(terms, 0, -1):
+            value = own + order + 2 * (k - 1) - k * (order + k - 1) / value
+        result[part] /= value
     return result

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, read_only
 from jointbench.acquisition.basics.compiled import compiled
+from jointbench.signal.fractal.map_covariance import map_sums
 from jointbench.signal.surface.structure_function import Sampling, StructureFunction
 
 EXACT_STEPS = 20
@@ -80,19 +81,40 @@ def structure_covariance(estimate: StructureFunction) -> Callable[[Seen], FloatA
         read-only. The last ones are kept: a model that is equal to one of them gets
         its covariance.
     """
-    plans = [_plan(estimate.lag, sampling) for sampling in estimate.samplings]
+    sums = [_sums_of(estimate.lag, sampling) for sampling in estimate.samplings]
 
     @lru_cache(maxsize=KEPT)
     def covariance(seen: Seen) -> FloatArray:
         """Add up the covariances of the contact surfaces, each with its share of S."""
         value = seen(estimate.lag)
         total = np.zeros((value.size, value.size))
-        for sampling, plan in zip(estimate.samplings, plans, strict=True):
-            own = _evaluate(plan, sampling.spacing, seen) / np.outer(value, value)
+        for sampling, added_up in zip(estimate.samplings, sums, strict=True):
+            own = added_up(seen) / np.outer(value, value)
             total += sampling.share**2 * _for_gaps(own, sampling, estimate.lag)
         return read_only(total)
 
     return covariance
+
+
+def _sums_of(lag: FloatArray, sampling: Sampling) -> Callable[[Seen], FloatArray]:
+    """Return the covariance of one contact surface for a model of S."""
+    spacing = sampling.spacing
+    steps = _steps(lag, spacing)
+    if sampling.profiles > 1 and np.isfinite(sampling.row_distance):
+        whole = np.rint(steps).astype(np.int64)
+        if np.array_equal(whole, steps):
+            distance = sampling.row_distance / spacing
+            rows = map_sums(whole, sampling.points, sampling.profiles, distance)
+            return lambda seen: rows.covariance(seen(spacing * rows.distance))
+    plan = _plan(steps, sampling)
+    return lambda seen: _evaluate(plan, spacing, seen)
+
+
+def _steps(lag: FloatArray, spacing: float) -> FloatArray:
+    """Return lags [samples]; those of the surface's own grid stay exact integers."""
+    steps = lag / spacing
+    whole = np.rint(steps)
+    return np.where(np.abs(steps - whole) < 1e-6 * steps, whole, steps)
 
 
 def _for_gaps(
@@ -139,13 +161,9 @@ def _squares(
     return sums
 
 
-def _plan(lag: FloatArray, sampling: Sampling) -> _Plan:
-    """Prepare the sums of one surface for all pairs of lags."""
-    steps = lag / sampling.spacing
-    whole = np.rint(steps)
-    # Lags on the surface's own grid stay exact integers, so distances coincide.
-    steps = np.where(np.abs(steps - whole) < 1e-6 * steps, whole, steps)
-    first, second = np.triu_indices(lag.size)
+def _plan(steps: FloatArray, sampling: Sampling) -> _Plan:
+    """Prepare the sums of one surface for all pairs of lags [samples]."""
+    first, second = np.triu_indices(steps.size)
     offsets = _graded(sampling.points, EXACT_STEPS, GROWTH)
     offsets = np.concatenate([-offsets[:0:-1], offsets])
     points, weights = [], []

@@ -13,7 +13,6 @@ from scipy.ndimage import median_filter, uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
-from jointbench.signal.frf.line_peaks import prominent_peaks
 
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
@@ -148,9 +147,11 @@ def _standing_out(level: FloatArray) -> Sequence[int]:
 
     Noise of a single hit is rough from line to line; the median of a few is not.
     """
+    from scipy.signal import find_peaks  # slow to import
+
     smooth = median_filter(level, _SMOOTH, mode="nearest")
     floor = max(float(smooth.max()), 1.0) * np.finfo(float).eps
-    found = prominent_peaks(
+    found, _ = find_peaks(
         np.log(np.maximum(smooth, floor)),
         prominence=float(np.log(_STANDS_OUT)),
         distance=max(1, level.size // _APART),

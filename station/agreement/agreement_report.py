@@ -35,7 +35,11 @@ _MOST_FRFS = 9
 
 
 def write_agreement_report(
-    path: Path, name: str, results: Mapping[str, Agreement]
+    path: Path,
+    name: str,
+    results: Mapping[str, Agreement],
+    *,
+    simulated: bool = False,
 ) -> None:
     """Write one offline HTML report, a section for each state.
 
@@ -43,6 +47,7 @@ def write_agreement_report(
         path: to write.
         name: of the model.
         results: by state.
+        simulated: whether a session was.
     """
     sections = [
         Section(f"state-{at}", _heading(label), tuple(_items(at, one)))
@@ -53,7 +58,7 @@ def write_agreement_report(
         lead="Measured and computed modes and FRFs at the same points, along the same "
         "directions.",
         software=software_version(),
-        simulated=False,
+        simulated=simulated,
         tiles=tuple(_tiles(next(iter(results.values())))),
         sections=tuple(sections),
     )

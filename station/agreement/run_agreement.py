@@ -1,58 +1,17 @@
 # SPDX-License-Identifier: MIT
 """``jointbench agreement``: a measured structure beside its identified model."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
-from jointbench.analysis.structures.agreement.compare_structure import (
-    Agreement,
-    ComparedPlaces,
-    compare_structure,
-)
-from jointbench.analysis.structures.matrices.structure import Structure
-from jointbench.analysis.structures.reduction.body_moduli import scaled_structure
-from jointbench.analysis.structures.reduction.mounted_sensors import (
-    MountedSensor,
-    readout,
-    sensor_rows,
-)
-from jointbench.analysis.structures.reduction.reduce import reduce_structure
-from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
-from jointbench.analysis.structures.reduction.reduction_cache import (
-    cached,
-    content_key,
-)
 from jointbench.station.agreement.agreement_json import agreement_json
 from jointbench.station.agreement.agreement_text import show_agreement
+from jointbench.station.agreement.compare_states import compare_states
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.files.toml_file import read_toml
-from jointbench.station.joints.identify_checks import SPARE_MODES
-from jointbench.station.joints.state_values import (
-    IdentifiedFile,
-    StateValues,
-    read_identified,
-    state_labels,
-    state_values,
-)
-from jointbench.station.joints.structure_model import (
-    StructureModel,
-    sensors_of,
-    structure_of,
-)
-from jointbench.station.joints.structure_states import (
-    MeasuredState,
-    measured_states,
-    named_sensors,
-)
-from jointbench.station.screen.terminal import working, write_json
-
-_RIGID = 6
+from jointbench.station.joints.state_values import read_identified
+from jointbench.station.screen.terminal import write_json
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,118 +55,19 @@ def run_agreement(
     if not sessions:
         raise UsageError("no session to compare with; name one or several")
     check_outputs([model, identified, *sessions], [outputs.json, outputs.report])
-    settings, found = read_toml(model, StructureModel), read_identified(identified)
-    measured = measured_states(sessions, band, FrfOptions())
-    with working("reducing, comparing"):
-        results = {
-            label: agreement_of(
-                model, settings, _state_of(found, label, len(measured)), state, outputs
-            )
-            for label, state in measured.items()
-        }
-    show_agreement(results, outputs.json)
+    done = compare_states(
+        model, read_identified(identified), sessions, band=band, cache=outputs.cache
+    )
+    show_agreement(done.states, outputs.json)
     write_json(
-        outputs.json, {name: agreement_json(one) for name, one in results.items()}
+        outputs.json, {name: agreement_json(one) for name, one in done.states.items()}
     )
     if outputs.report is not None:
         from jointbench.station.agreement.agreement_report import (
             write_agreement_report,
         )
 
-        write_agreement_report(outputs.report, model.name, results)
-    return not any(one.suspects for one in results.values())
-
-
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """The identified file, and the label of a state in it."""
-
-    file: IdentifiedFile
-    label: str | None
-
-
-def _state_of(file: IdentifiedFile, label: str, count: int) -> _Known:
-    """Return the label of a measured state in the file; None where it has none."""
-    labels = state_labels(file)
-    return _Known(file, label if label in labels or (count > 1 and labels) else None)
-
-
-def agreement_of(
-    path: Path,
-    settings: StructureModel,
-    known: _Known,
-    state: MeasuredState,
-    outputs: AgreementOutputs,
-) -> Agreement:
-    """Compare one measured state with the model.
-
-    Args:
-        path: of the model; files in it are relative to its folder.
-        settings: the model.
-        known: identified values.
-        state: measured.
-        outputs: with the folder of reduced structures.
-    """
-    structure = structure_of(settings, path.parent)
-    values = state_values(known.file, structure, settings.identify, known.label)
-    structure = _at_values(settings, path, structure, values)
-    chain = state.chain
-    sensors = sensors_of(settings.sensors)
-    out = named_sensors(chain.frf.outputs, sensors, "sensors")
-    hits = {**sensors, **sensors_of(settings.hits)}
-    inputs = named_sensors(chain.frf.inputs, hits, "hits")
-    axes = [_along(one, axis) for one in out for axis in range(3)]
-    count = chain.result.model.natural_frequency.size
-    reduced = _reduced(structure, settings, [*out, *inputs, *axes], count, outputs)
-    places = ComparedPlaces(
-        readout(structure, reduced, out),
-        readout(structure, reduced, inputs),
-        readout(structure, reduced, axes),
-        np.array([int(np.argmax(np.abs(one.direction))) for one in out]),
-    )
-    return compare_structure(
-        reduced,
-        values.joints,
-        places,
-        chain.result.model,
-        chain.frf,
-        values.covariance,
-        band=chain.result.band,
-    )
-
-
-def _at_values(
-    settings: StructureModel, path: Path, structure: Structure, values: StateValues
-) -> Structure:
-    if values.masses:
-        structure = structure_of(settings.with_masses(values.masses), path.parent)
-    if values.moduli:
-        structure = scaled_structure(structure, values.moduli)
-    return structure
-
-
-def _reduced(
-    structure: Structure,
-    settings: StructureModel,
-    places: Sequence[MountedSensor],
-    count: int,
-    outputs: AgreementOutputs,
-) -> ReducedModel:
-    modes = settings.identify.modes or _RIGID + count + SPARE_MODES
-    box = settings.identify.stiffness_box
-    loads: FloatArray = sensor_rows(structure, places)
-    key = content_key(structure, modes, box, sorted(map(repr, places)))
-    return cached(
-        outputs.cache,
-        key,
-        lambda: reduce_structure(structure, modes=modes, box=box, loads=loads),
-    )
-
-
-def _along(sensor: MountedSensor, axis: int) -> MountedSensor:
-    unit: Mapping[int, tuple[float, float, float]] = {
-        0: (1.0, 0.0, 0.0),
-        1: (0.0, 1.0, 0.0),
-        2: (0.0, 0.0, 1.0),
-    }
-    return replace(sensor, name=f"{sensor.name} {'xyz'[axis]}", direction=unit[axis])
+        write_agreement_report(
+            outputs.report, model.name, done.states, simulated=done.simulated
+        )
+    return not done.suspected

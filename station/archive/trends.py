@@ -79,19 +79,20 @@ class Trend:
     significance: float
 
     @staticmethod
-    def point(row: TableRow, over: str, way: str = "") -> TrendPoint:
+    def point(row: TableRow, over: str, way: str = "", load: str = "") -> TrendPoint:
         """Return a row of the table as a point of a trend.
 
         Args:
             row: of the table.
             over: one of `OVER`.
             way: how the result was made; results of two ways are two quantities.
+            load: torque of the bolts in words; likewise.
 
         Raises:
             UsageError: `over` is nothing that a trend can go over.
         """
         check_trend(over)
-        words = f"{way}{row.part} {row.item} {row.name}".replace("  ", " ")
+        words = f"{way}{row.part} {row.item} {row.name}{load}".replace("  ", " ")
         at = getattr(row, over)
         return TrendPoint(words, row.unit, at, row.value, row.sd)
 

@@ -33,18 +33,13 @@ _CAPTION = (
 )
 
 
-def chain_report(done: ExaminedChain, *, simulated: bool = False) -> Report:
-    """Arrange a chain as a report.
-
-    Args:
-        done: the chain.
-        simulated: whether the hits were simulated.
-    """
+def chain_report(done: ExaminedChain) -> Report:
+    """Arrange a chain as a report."""
     return Report(
         title=chain_headline(done),
         lead=f"Chain of {done.title}: surfaces, contact law, structure, hits.",
         software=f"{software_version()}: gap",
-        simulated=simulated,
+        simulated=done.simulated,
         tiles=_tiles(done),
         sections=chain_sections(done),
         findings=(f"{done.found.reason[:1].upper()}{done.found.reason[1:]}",),
@@ -70,7 +65,7 @@ def chain_sections(done: ExaminedChain) -> tuple[Section, ...]:
         Section("links", "Where the disagreement enters", (tests,)),
         Section("causes", "Causes at the joint", _causes(done)),
         Section("moved", "Every later quantity", _moved(done)),
-        *(contact_sections(found.contact) if structure_holds(found.chain) else ()),
+        *(contact_sections(found.joint) if structure_holds(found.chain) else ()),
     )
 
 

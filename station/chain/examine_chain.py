@@ -9,6 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.session_file.session_origin import any_simulated
 from jointbench.analysis.gap.catalogue.catalogue import check_names
 from jointbench.analysis.gap.chain.chain_diagnosis import (
     ChainDiagnosis,
@@ -54,6 +55,7 @@ class ExaminedChain:
         modes: of every state.
         response: of the state with the highest preload; None without hits.
         remarks: what was left out, and why, a line each.
+        simulated: whether a session was.
     """
 
     title: str
@@ -63,6 +65,7 @@ class ExaminedChain:
     modes: tuple[MovedModes, ...]
     response: MovedResponse | None
     remarks: tuple[str, ...]
+    simulated: bool
 
     @property
     def diagnosis(self) -> Diagnosis:
@@ -126,6 +129,7 @@ def examine_chain(
         moved_modes(structure, stiffness),
         moved_response(structure, stiffness, int(np.argmax(measured.states.preload))),
         measured.remarks,
+        any_simulated(sessions),
     )
 
 
@@ -149,8 +153,16 @@ def _meshed(
     found = diagnose_chain(chain, without=without, progress=progress)
     stiffness = moved_stiffness(found)
     modes = moved_body_modes(own, stiffness)
-    name = own.states.name
-    return ExaminedChain(name, found, heights, stiffness, modes, None, own.remarks)
+    return ExaminedChain(
+        own.states.name,
+        found,
+        heights,
+        stiffness,
+        modes,
+        None,
+        own.remarks,
+        any_simulated(sessions),
+    )
 
 
 def _contact_names(wanted: GapRequest) -> frozenset[str]:

@@ -24,7 +24,7 @@ from jointbench.analysis.structures.identification.joint_result import (
 )
 from jointbench.analysis.structures.reduction.reduced_model import solve_reduced
 from jointbench.station.chain.read_chain import QUANTITY
-from jointbench.station.gap.joint_state_files import joint_facts
+from jointbench.station.joint_states.joint_state_files import joint_facts
 from jointbench.station.joints.identify_run import (
     IdentifiedStructure,
     identified_structure,

@@ -16,8 +16,8 @@ from jointbench.analysis.gap.contact_bench.joint_states import ContactQuantity
 from jointbench.analysis.gap.intake.session_campaign import session_campaign
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.nominal import NominalParameters
-from jointbench.station.gap.joint_state_files import joint_facts
 from jointbench.station.gap.session_hits import judged_recordings, with_preloads
+from jointbench.station.joint_states.joint_state_files import joint_facts
 from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.bolted_joint_table import BoltedLinkTable

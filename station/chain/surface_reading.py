@@ -18,11 +18,11 @@ from jointbench.analysis.gap.contact_bench.measured_preload_law import (
     MeasuredPreloadLaw,
     measured_preload_law,
 )
-from jointbench.analysis.gap.model.diagnosis_record import Finding, NamedEffect
-from jointbench.analysis.gap.surface_bench.surface_diagnosis import (
+from jointbench.analysis.gap.law_diagnosis.surface_diagnosis import (
     SurfaceDiagnosis,
     diagnose_surface,
 )
+from jointbench.analysis.gap.model.diagnosis_record import Finding, NamedEffect
 from jointbench.signal.band_limited.band_limited_fit import fit_lines
 from jointbench.station.contact.measured_prediction import (
     MeasuredJoint,

@@ -2,6 +2,7 @@
 """``jointbench archive``: all results in one table, and trends over torque and date."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -23,6 +24,9 @@ from jointbench.station.files.archive_patterns import result_files
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.results.results_read import StoredResult, without_copies
 from jointbench.station.screen.terminal import console, table, working, write_json
+
+BETWEEN_LOADS = ("day", "specimen")
+"""Over what trends are kept apart by the torque of the bolts."""
 
 
 def run_archive(
@@ -79,10 +83,20 @@ def run_archive(
 
 
 def _trends(rows: Sequence[Row], over: str) -> tuple[Trend, ...]:
-    """Return the trends, separately for each recipe and software version."""
+    """Return the trends, separately for each recipe and software version.
+
+    Over dates and specimens separately for each torque as well: a joint is stiffer at
+    more torque, which would hide what changes.
+    """
     ways = ways_of(rows)
+    loads = torque_words(rows) if over in BETWEEN_LOADS else {}
     points = [
-        Trend.point(row, over, ways[row.recipe, row.recipe_sha256, row.software])
+        Trend.point(
+            row,
+            over,
+            ways[row.recipe, row.recipe_sha256, row.software],
+            loads.get(row.torque, ""),
+        )
         for row in rows
         if not math.isnan(row.value) and row.part != "hits"
     ]
@@ -109,6 +123,23 @@ def _show(
     title = f"Trends over {over} ({len(results)} results)"
     columns = ("quantity", "results", "mean ± scatter", f"over {over}", "verdict")
     screen.print(table(title, columns, trend_rows(trends, over)))
+
+
+def torque_words(rows: Sequence[Row]) -> dict[float, str]:
+    """Return what names each torque, `` at 20 N m``, where each was set repeatedly.
+
+    Args:
+        rows: of the table.
+
+    Returns:
+        Words by torque; none for one torque, nor where one has a single result, as
+        torques have that were read and not set.
+    """
+    met = {(row.torque, row.input_sha256) for row in rows}
+    counts = Counter(torque for torque, _ in met if not math.isnan(torque))
+    if len(counts) < 2 or min(counts.values()) < 2:
+        return {}
+    return {torque: f" at {torque:g} N m" for torque in counts}
 
 
 def ways_of(rows: Sequence[Row]) -> dict[tuple[str, str, str], str]:

@@ -133,12 +133,22 @@ def export_joint_command(
         jointbench export-joint plates.toml joint.json --out joint/ --to calculix
         --check
     """
+    from jointbench.station.joint_files.export_files import PROGRAMS
+    from jointbench.station.joint_files.exported_joint import ExportRequest
     from jointbench.station.joint_files.run_export_joint import (
-        ExportRequest,
+        parse_pieces,
+        parse_programs,
         run_export_joint,
     )
 
-    request = ExportRequest(joint, state, to, pieces, law, check)
+    request = ExportRequest(
+        joint,
+        state,
+        PROGRAMS if to is None else parse_programs(to),
+        None if pieces is None else parse_pieces(pieces),
+        law,
+        check,
+    )
     good = run_export_joint(model, identified, out, request)
     return 0 if good else EXIT_QUALITY
 

@@ -189,7 +189,7 @@ def _write(
     json_target: str | None,
 ) -> None:
     """Write report and summary."""
-    report = chain_report(done, simulated=True)
+    report = chain_report(done)
     section = Section(
         "truth",
         "What the bench is made of",

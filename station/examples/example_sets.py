@@ -76,6 +76,10 @@ EXAMPLES = (
         ("joint-stiffness.toml", "joint-stiffness.csv"),
     ),
     ExampleSet(
+        "loops",
+        "loops of force and displacement of a joint, and the program that makes them",
+    ),
+    ExampleSet(
         "pressed",
         "two plates under four bolts: the pressure between them",
         ("pressed-plates.toml",),

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.held_out_torques import HeldOutTorques
@@ -14,7 +14,7 @@ from jointbench.analysis.gap.contact_bench.joint_states import (
     UNITS,
     ContactQuantity,
 )
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import ContactDiagnosis
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import ContactDiagnosis
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.station.drawing.palette import LAW, MEASURED, MODEL, REFUSED
@@ -39,6 +39,8 @@ _CAPTION = (
 )
 _FIRST_DAMPING = QUANTITIES.index(ContactQuantity.NORMAL_DAMPING)
 _MOST_LEVELS = 12
+_SAME_FORCE = 0.3
+"""Step of the logarithm of a tangential force that begins another line."""
 
 
 def contact_sections(done: ContactDiagnosis) -> tuple[Section, ...]:
@@ -142,17 +144,38 @@ def _curve(
     mean = base.copy()
     mean[bench.layout.assembly :] = 0.0
     joint = bench.joint(mean, () if fit is None else fit.terms)
-    rising = np.flatnonzero(~bench.data.states.falling)
-    preload = bench.nominal.preload
-    chosen = rising[np.argsort(preload[rising])]
     value = joint.table[quantity] * _scale(bench, quantity)
+    gap = np.full(1, np.nan)
+    pieces = [
+        np.concatenate([values[part], gap])
+        for values in (bench.nominal.preload, value)
+        for part in _rising_parts(bench, quantity)
+    ]
+    half = len(pieces) // 2
     return line(
-        preload[chosen],
-        value[chosen],
+        np.concatenate(pieces[:half])[:-1],
+        np.concatenate(pieces[half:])[:-1],
         label,
         color=color,
         dash="dot" if label.startswith("law, nominal") else "solid",
     )
+
+
+def _rising_parts(bench: ContactBench, quantity: int) -> list[IntArray]:
+    """Return the rising states by preload, a part for each tangential force.
+
+    Forces that differ within a preload have a line of their own.
+    """
+    states, preload = bench.data.states, bench.nominal.preload
+    rising = np.flatnonzero(~states.falling)
+    if not states.several_forces:
+        return [rising[np.argsort(preload[rising])]]
+    own = bench.data.rows.state[bench.data.rows.quantity == quantity]
+    kept = np.intersect1d(rising, own)
+    kept = kept[np.argsort(states.shear[kept])]
+    steps = np.diff(np.log(np.nan_to_num(states.shear[kept], nan=1.0)))
+    parts = np.split(kept, np.flatnonzero(steps > _SAME_FORCE) + 1)
+    return [part[np.argsort(preload[part])] for part in parts]
 
 
 def _held_out(done: ContactDiagnosis) -> tuple[Item, ...]:

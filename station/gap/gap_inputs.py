@@ -15,7 +15,6 @@ from jointbench.analysis.gap.catalogue.catalogue import (
     with_real_joints,
 )
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
 from jointbench.analysis.gap.diagnosis.single_record import (
@@ -24,15 +23,16 @@ from jointbench.analysis.gap.diagnosis.single_record import (
 )
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.intake.read_hit_campaign import HIT_SCHEMA
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.contact_section import contact_sections
 from jointbench.station.gap.frf_levels import refuse_frfs
-from jointbench.station.gap.joint_state_files import names_states, read_joints
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
+from jointbench.station.gap.loop_section import loop_sections
 from jointbench.station.gap.measured_curves import (
     curves_of_campaign,
     curves_of_recordings,
@@ -47,6 +47,11 @@ from jointbench.station.gap.structure_files import examine_structure, nominal_be
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
 from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.gap.surface_gap_section import surface_gap_sections
+from jointbench.station.joint_states.joint_state_files import (
+    loops_of,
+    names_states,
+    read_joints,
+)
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
@@ -91,6 +96,7 @@ class Examined:
         remarks: what was left out, and why, a line each.
         plan: places of a bolted structure, or None.
         sections: further sections of the report, after the verdict.
+        simulated: whether a session was.
     """
 
     title: str
@@ -100,6 +106,7 @@ class Examined:
     remarks: tuple[str, ...] = ()
     plan: StructurePlan | None = None
     sections: tuple[Section, ...] = ()
+    simulated: bool = False
 
 
 def examine(
@@ -225,7 +232,13 @@ def _examine_joint(
     progress("reading the states")
     data, law = read_joints(paths)
     done = diagnose_contact(data, law, without=wanted.without, progress=progress)
-    return Examined(data.name, done.found, sections=contact_sections(done))
+    loops = loops_of(paths)
+    return Examined(
+        data.name,
+        done.found,
+        remarks=tuple(one.words for one in loops),
+        sections=(*contact_sections(done), *loop_sections(loops)),
+    )
 
 
 def _examine_surface(
@@ -349,7 +362,12 @@ def _examine_sessions(
         curves=curves,
         progress=progress,
     )
-    return Examined(title, found, remarks=(*remarks, *left_out))
+    return Examined(
+        title,
+        found,
+        remarks=(*remarks, *left_out),
+        simulated=any(session.simulated for session in sessions),
+    )
 
 
 def _refuse_curves(wanted: GapRequest) -> None:

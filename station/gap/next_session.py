@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
     ContactDiagnosis,
     diagnose_contact,
 )
 from jointbench.analysis.gap.next_experiment.contact_series import torque_series
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.gap.joint_state_files import read_joints
 from jointbench.station.gap.next_plan import write_plan
+from jointbench.station.joint_states.joint_state_files import read_joints
 from jointbench.station.screen.terminal import console, table, write_json
 
 _COLUMNS = ("experiment", "minutes", "gain of probability", "per hour", "decides")

@@ -66,7 +66,7 @@ def run_gap(
         done = examine(sources, wanted, progress=lambda line: status.update(seen(line)))
     _show(done, packages, json_target)
     if report is not None:
-        content = gap_report(done.found, title=done.title)
+        content = gap_report(done.found, title=done.title, simulated=done.simulated)
         content = with_structure(content, done.plan, done.found)
         content = replace(content, sections=(*done.sections, *content.sections))
         if done.scores:

@@ -7,7 +7,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.records.surfaces import Surface
-from jointbench.analysis.gap.surface_bench.surface_diagnosis import (
+from jointbench.analysis.gap.law_diagnosis.surface_diagnosis import (
     SurfaceDiagnosis,
     diagnose_surface,
 )

@@ -4,13 +4,13 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.law_diagnosis.surface_diagnosis import SurfaceDiagnosis
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.surface_bench.predicted_structure import (
     predicted_spectrum,
     predicted_structure,
 )
-from jointbench.analysis.gap.surface_bench.surface_diagnosis import SurfaceDiagnosis
 from jointbench.station.drawing.palette import MEASURED, MODEL, REFUSED
 from jointbench.station.report.gap_sentences import effect_words
 from jointbench.station.screen.figures import Figure, axis, figure

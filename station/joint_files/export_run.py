@@ -34,8 +34,8 @@ from jointbench.analysis.structures.reduction.full_modes import (
 )
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.state_values import (
+    IdentifiedFile,
     StateValues,
-    read_identified,
     state_values,
 )
 from jointbench.station.joints.structure_model import (
@@ -92,18 +92,19 @@ class ExportSource:
     values: StateValues
 
 
-def export_source(model: Path, identified: Path, state: str | None) -> ExportSource:
-    """Read a model and its identified values.
+def export_source(
+    model: Path, identified: IdentifiedFile, state: str | None
+) -> ExportSource:
+    """Read a model and place its identified values.
 
     Args:
         model: structure model (TOML).
-        identified: JSON of ``identify``.
+        identified: joints of the model.
         state: its label; None where there is one only.
     """
     settings = read_toml(model, StructureModel)
-    found = read_identified(identified)
     structure = structure_of(settings, model.parent)
-    values = state_values(found, structure, settings.identify, state)
+    values = state_values(identified, structure, settings.identify, state)
     if values.masses:
         structure = structure_of(settings.with_masses(values.masses), model.parent)
     if values.moduli:

@@ -76,16 +76,22 @@ def read_identified(path: Path) -> IdentifiedFile:
     if path.stat().st_size > _MOST_BYTES:
         raise FormatError(f"{path}: larger than {_MOST_BYTES} bytes")
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        found = {
-            name: _parameter(name, one) for name, one in content["parameters"].items()
-        }
-        return IdentifiedFile(found, _covariance(content, len(found)))
+        return identified_of(json.loads(path.read_text(encoding="utf-8")))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise FormatError(
             f"{path}: {_fault(error)}; give the file that "
             "'jointbench identify --json' wrote"
         ) from error
+
+
+def identified_of(content: Mapping[str, Any]) -> IdentifiedFile:
+    """Return the parameters in what ``identify`` writes.
+
+    Args:
+        content: plain data, as in its JSON.
+    """
+    found = {name: _parameter(name, one) for name, one in content["parameters"].items()}
+    return IdentifiedFile(found, _covariance(content, len(found)))
 
 
 def _fault(error: Exception) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+from jointbench.acquisition.session_file.session_origin import any_simulated
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.analysis.structures.identification.frf_gains import FrfGains
 from jointbench.analysis.structures.identification.structure_evidence import (
@@ -25,7 +26,7 @@ from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.modes import ModalSettings
 from jointbench.station.files.frf_files import read_frf
-from jointbench.station.files.input_files import read_recordings
+from jointbench.station.files.input_files import is_session_name, read_recordings
 from jointbench.station.joints.structure_model import StructureModel, sensors_of
 from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.pipeline.chain import (
@@ -54,11 +55,13 @@ class MeasuredState:
         preload: on the joint [N], None where the session does not say.
         chain: from its hits to modes.
         preload_sd: its standard uncertainty where it was measured [N], else None.
+        simulated: whether the instruments were.
     """
 
     preload: float | None
     chain: ModalChain
     preload_sd: float | None = None
+    simulated: bool = False
 
 
 def measured_states(
@@ -83,6 +86,7 @@ def measured_states(
             continue
         columns, point = options.columns, options.point
         stored = read_recordings([path], columns=columns, point=point)
+        simulated = is_session_name(path) and any_simulated([path])
         groups = by_preload(judge_hits(stored, settings))
         for preload, recordings in groups:
             label = path.stem
@@ -90,7 +94,8 @@ def measured_states(
                 label += "@" + ("none" if preload is None else f"{preload:g}N")
             with working(f"fitting modes of {label}"):
                 chain = judged_modes(recordings, settings, preload=preload)
-            found[label] = MeasuredState(preload, chain, preload_sd(recordings))
+            deviation = preload_sd(recordings)
+            found[label] = MeasuredState(preload, chain, deviation, simulated)
     return found
 
 

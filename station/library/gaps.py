@@ -60,7 +60,9 @@ class GapVerdict(Shown):
     def write_report(self, path: str | Path) -> Path:
         """Write the report of the diagnosis as one HTML file."""
         target = Path(path)
-        write_report(gap_report(self.diagnosis, title=self.examined.title), target)
+        done = self.examined
+        report = gap_report(done.found, title=done.title, simulated=done.simulated)
+        write_report(report, target)
         return target
 
     @property

@@ -4,10 +4,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
-from jointbench.analysis.lumped.identified import Identification, JointParameter
+from jointbench.analysis.lumped.identified import (
+    Identification,
+    JointParameter,
+    identification_json,
+)
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
 )
@@ -17,9 +22,18 @@ from jointbench.analysis.structures.identification.weigh_hypotheses import (
 from jointbench.signal.modal.modes import ModalSettings
 from jointbench.station.desk.desk_results import chosen_at_desk
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.joints.identify_run import identified_structure
+from jointbench.station.joints.identified_json import identified_json
+from jointbench.station.joints.identify_run import (
+    IdentifiedStructure,
+    identified_structure,
+)
 from jointbench.station.joints.model_kind import describes_structure
 from jointbench.station.joints.modes_of_files import modes_of_files
+from jointbench.station.joints.state_values import (
+    IdentifiedFile,
+    identified_of,
+    read_identified,
+)
 from jointbench.station.library.argument_checks import (
     checked_band,
     one_path,
@@ -44,11 +58,17 @@ class IdentifiedJoints(Shown):
 
     Attributes:
         result: of a lumped bench or of a meshed structure.
-        hypotheses: what else could explain each state of a meshed structure.
+        structure: bodies, states and hypotheses of a meshed structure; None for a
+            lumped bench.
     """
 
     result: Identification | StructureIdentification
-    hypotheses: tuple[StateHypotheses, ...] = ()
+    structure: IdentifiedStructure | None = None
+
+    @property
+    def hypotheses(self) -> tuple[StateHypotheses, ...]:
+        """What else could explain each state of a meshed structure."""
+        return () if self.structure is None else self.structure.hypotheses
 
     @property
     def parameters(self) -> tuple[JointParameter, ...]:
@@ -66,6 +86,13 @@ class IdentifiedJoints(Shown):
                 return one
         known = ", ".join(one.name for one in self.parameters)
         raise UsageError(f"no parameter {name!r}; identified are {known}")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the joints as plain data, as ``identify --json`` writes them."""
+        if self.structure is not None:
+            return identified_json(self.structure)
+        assert isinstance(self.result, Identification)
+        return identification_json(self.result)
 
     @property
     def view(self) -> ResultView:
@@ -139,7 +166,7 @@ def identify(
             surfaces=[Path(one) for one in surface],
             options=options,
         )
-        return IdentifiedJoints(done.result, done.hypotheses)
+        return IdentifiedJoints(done.result, done)
     if not sessions:
         raise UsageError(f"'{path}' is a lumped bench and needs sessions, hits or FRFs")
     settings = ChainSettings(modal=ModalSettings(band=band))
@@ -152,6 +179,20 @@ def identify(
     return IdentifiedJoints(
         identify_joint(read_toml(path, BenchModel), chain.result.model)
     )
+
+
+def values_of(identified: IdentifiedJoints | str | Path) -> IdentifiedFile:
+    """Return the values of joints that were identified here or in a run before.
+
+    Args:
+        identified: result of `identify`, or the JSON of ``identify``.
+
+    Raises:
+        FormatError: the file is no such JSON.
+    """
+    if isinstance(identified, IdentifiedJoints):
+        return identified_of(identified.to_dict())
+    return read_identified(one_path(identified, "the JSON of 'identify'"))
 
 
 def _is_empty(source: Files) -> bool:

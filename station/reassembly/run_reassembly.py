@@ -16,7 +16,7 @@ from jointbench.analysis.gap.reassembly.changed_joint import (
     compare_assemblies,
 )
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.gap.joint_state_files import read_joints
+from jointbench.station.joint_states.joint_state_files import read_joints
 from jointbench.station.reassembly.reassembly_json import reassembly_json
 from jointbench.station.reassembly.reassembly_text import (
     SCATTER_COLUMNS,

@@ -48,8 +48,14 @@ SUMMARY_HEIGHT = 640
 SAVE_HINT = "Save as SVG writes it for a talk."
 
 
-def gap_report(found: Diagnosis, *, title: str) -> Report:
-    """Arrange a diagnosis as a report."""
+def gap_report(found: Diagnosis, *, title: str, simulated: bool = False) -> Report:
+    """Arrange a diagnosis as a report.
+
+    Args:
+        found: the diagnosis.
+        title: of the campaign.
+        simulated: whether a session was.
+    """
     sections = [
         Section("picture", "Evidence", _picture(found)),
         Section("effects", "Conclusion", _effects(found)),
@@ -65,7 +71,7 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
         title=headline(found),
         lead=_lead(found, title),
         software=f"{software_version()}: gap",
-        simulated=False,
+        simulated=simulated,
         tiles=(*_tiles(found), *_effect_tiles(found)),
         sections=tuple(section for section in sections if section.items),
         findings=_findings(found),

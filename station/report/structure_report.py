@@ -50,6 +50,8 @@ def write_structure_report(
     model: ReducedModel,
     result: StructureIdentification,
     more: Sequence[Section | None] = (),
+    *,
+    simulated: bool = False,
 ) -> None:
     """Write one offline HTML report about identified joints.
 
@@ -60,6 +62,7 @@ def write_structure_report(
         model: the same, reduced.
         result: of the identification.
         more: further sections, after the parameters; None are left out.
+        simulated: whether a session was.
     """
     sections = [
         Section("parameters", "Joints", (_parameters(result), *_reasons(result))),
@@ -73,7 +76,7 @@ def write_structure_report(
         title=f"Joints of {name}",
         lead=f"{structure.size} degrees of freedom, reduced to {model.size}.",
         software=software_version(),
-        simulated=False,
+        simulated=simulated,
         tiles=tuple(
             Tile(
                 one.name,

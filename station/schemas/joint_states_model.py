@@ -24,6 +24,8 @@
     assembly = 1
     kn = "6.0e7 N/m"               # or "> 5e9 N/m", known from below at 95 %
     kn_sd = "3 %"
+    loop = "loop-20.csv"           # force over displacement: kt, ct by amplitude
+    frequency = "0.1 Hz"           # of its cycles
 """
 
 import math
@@ -181,6 +183,9 @@ class JointStateTable(StrictTable):
     correlation: dict[str, Annotated[float, Field(gt=-1, lt=1)]] = Field(
         default_factory=dict
     )
+    loop: str | None = None
+    loop_sd: Spread = 0.01
+    loop_loss_sd: Spread = 0.05
     identified: str | None = None
     parameters: dict[Literal["kn", "kt", "kt2", "kr", "cn", "ct"], str] = Field(
         default_factory=dict
@@ -191,6 +196,16 @@ class JointStateTable(StrictTable):
         if self.torque is None and self.preload is None:
             raise ValueError(
                 "a state needs its torque or its preload; add torque = '20 N m'"
+            )
+        if self.loop is not None and self.frequency is None:
+            raise ValueError(
+                "a loop needs the frequency of its cycles; add frequency = '0.1 Hz'"
+            )
+        own = {k for k in ("kt", "ct") if getattr(self, k) is not None}
+        if self.loop is not None and own | ({"kt", "ct"} & set(self.parameters)):
+            raise ValueError(
+                "kt and ct of this state are those of its loop; leave them out, or "
+                "write a state of their own"
             )
         if (self.identified is None) != (not self.parameters):
             raise ValueError(

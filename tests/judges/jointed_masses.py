@@ -137,6 +137,7 @@ def _integrate(  # type: ignore[no-untyped-def]
     mass,
     stiffness,
     damping,
+    inverse,
     direction,
     spring,
     limit,
@@ -150,8 +151,6 @@ def _integrate(  # type: ignore[no-untyped-def]
 ):
     cubic, quadratic, gap, stop = numbers
     n = mass.size
-    left = np.diag(mass) / step**2 + damping / (2 * step)
-    inverse = np.linalg.inv(left)
     old = np.zeros(n)
     now = start.copy()
     old[:] = start
@@ -209,10 +208,14 @@ def strike(
     inside = (time >= 0) & (time < width)
     push = np.where(inside, np.sin(np.pi * time / width) ** 2, 0.0)
     push *= impulse * FINE_RATE / push.sum()
+    # Inverted here: numba takes longer to compile an inverse than to integrate.
+    step = 1.0 / FINE_RATE
+    left = np.diag(structure.mass) / step**2 + structure.damping / (2 * step)
     samples = _integrate(
         structure.mass,
         structure.stiffness,
         structure.damping,
+        np.linalg.inv(left),
         structure.direction,
         structure.joint.slider_stiffness,
         structure.joint.slider_force,
@@ -220,7 +223,7 @@ def strike(
         push,
         where,
         np.zeros(structure.mass.size),
-        1.0 / FINE_RATE,
+        step,
         DECIMATION,
         aside,
     )

@@ -24,13 +24,14 @@ from jointbench.analysis.gap.contact_bench.contact_bench import (
     ContactBench,
     make_contact_bench,
 )
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
+    MORE_STATES,
     ContactDiagnosis,
     conclude_contact,
     too_few,
 )
-from jointbench.analysis.gap.diagnosis.contact_search import search_contact
-from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.law_diagnosis.contact_search import search_contact
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 
 Progress = Callable[[str], None]
@@ -68,6 +69,14 @@ class ChainDiagnosis:
         places = self.location.places
         return places[0].links if places else ()
 
+    @property
+    def joint(self) -> ContactDiagnosis:
+        """Diagnosis of the joint with the fit whose causes are named."""
+        if self.several is None or len(self.several.causes) < 2:
+            return self.contact
+        own = self.several
+        return replace(self.contact, best=own.fit, after=own.held)
+
 
 @one_thread()
 def diagnose_chain(
@@ -96,17 +105,25 @@ def diagnose_chain(
     judged = structure_holds(chain) and not too_few(data)
     if judged and not outcome.base_acceptance.passed:
         several = _causes(outcome, final, contact, progress)
-    if (test := _explained(outcome, final)) is not None:
+    if (test := _explained(outcome, final, several)) is not None:
         location = with_explained(location, test)
     location = _at_structure(_decided(location, chain, contact), chain)
     found = ChainDiagnosis(chain, location, contact, several, Finding.NONE, (), "", "")
     return _concluded(found)
 
 
-def _explained(outcome: SearchOutcome, bench: ContactBench) -> LinkTest | None:
-    """Return the test of the best effect of the contact that is accepted, if one is."""
-    own = [f for f in outcome.level if CUT not in {c.effect.name for c in f.candidates}]
-    if not (outcome.acceptance.passed and own and own[0].candidates):
+def _explained(
+    outcome: SearchOutcome, bench: ContactBench, several: SeveralCauses | None
+) -> LinkTest | None:
+    """Return the test of the best effects of the contact that are accepted, if any.
+
+    Several together count where no single one is accepted.
+    """
+    level = outcome.level if outcome.acceptance.passed else ()
+    if not level and several is not None:
+        level = (several.fit,)
+    own = [f for f in level if CUT not in {c.effect.name for c in f.candidates}]
+    if not (own and own[0].candidates):
         return None
     best = own[0]
     charge = bench.policy.parameter_charge * (best.x.size - best.n_base)
@@ -340,7 +357,8 @@ def _separating(several: SeveralCauses) -> str:
 def _experiment(found: ChainDiagnosis, links: tuple[ChainLink, ...]) -> str:
     contact = found.contact.found.experiment
     if found.several is not None and found.several.rivals:
-        contact = _separating(found.several) or contact
+        # What was ranked separates single effects, which do not explain the joint.
+        contact = _separating(found.several) or MORE_STATES
     steps = {
         ChainLink.SURFACE: found.chain.surface.experiment,
         ChainLink.STRUCTURE: found.chain.structure.experiment,

@@ -15,7 +15,7 @@ from jointbench.analysis.gap.contact_bench.contact_bench import (
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.contact_bench.joint_states import JointData
 from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
-from jointbench.analysis.gap.diagnosis.contact_search import (
+from jointbench.analysis.gap.law_diagnosis.contact_search import (
     accept_contact,
     fit_contact_base,
     fit_effect,

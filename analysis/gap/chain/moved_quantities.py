@@ -114,9 +114,7 @@ def moved_stiffness(found: ChainDiagnosis) -> MovedStiffness:
     log_p = contact.bench.nominal.log_preload
     nominal = surface.law.log_stiffness(log_p, np.zeros(len(surface.law.parameters)))
     row = 0 if int(contact.bench.data.rows.quantity[0]) == 0 else 1
-    held = contact.after
-    if found.several is not None and len(found.several.causes) > 1:
-        held = found.several.held
+    held = found.joint.after
     return MovedStiffness(
         preload=chain.states.preload,
         measured=np.exp(chain.reading.log_stiffness),

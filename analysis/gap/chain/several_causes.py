@@ -19,9 +19,9 @@ from jointbench.analysis.gap.contact_bench.held_out_torques import (
     HeldOutTorques,
     hold_out_torques,
 )
-from jointbench.analysis.gap.diagnosis.contact_search import accept_contact
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
+from jointbench.analysis.gap.law_diagnosis.contact_search import accept_contact
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, split

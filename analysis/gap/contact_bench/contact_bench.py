@@ -183,7 +183,8 @@ class ContactBench:
             entry = self.entries[term.candidate.label]
             acts[entry.place].append((entry, values_of(self, term)))
         layout, data = self.layout, self.data
-        log_p = self.nominal.log_preload + base[layout.state :]
+        own = base[layout.state :][data.states.settings]
+        log_p = self.nominal.log_preload + own
         if layout.nut >= 0:
             log_p = log_p - data.states.by_torque * base[layout.nut]
         joint = replace(self.nominal, law=self.law, log_preload=log_p)
@@ -306,7 +307,8 @@ class ContactBench:
             change = moved(list(range(first, first + count)))
             slopes[each, first + assembly] = change
         change = moved(list(range(layout.state, base.size)))
-        slopes[each, layout.state + rows.state] = change
+        setting = self.data.states.settings[rows.state]
+        slopes[each, layout.state + setting] = change
         return self.values.slopes(at - rows.value, slopes)
 
     def views(self, fit: Fit) -> tuple[View, ...]:

@@ -33,7 +33,7 @@ def damping_effects(data: JointData) -> list[ContactEffect]:
         if data.measures(quantity):
             found += _parallel_damping(QUANTITIES.index(quantity), name)
     if data.measures(ContactQuantity.TANGENTIAL_DAMPING):
-        found.append(_microslip())
+        found.append(_microslip(data))
     return found
 
 
@@ -99,15 +99,30 @@ def _adds(row: int) -> Act:
     return act
 
 
-def _microslip() -> ContactEffect:
-    """Return the loss of contacts whose rims slip, tangential direction."""
+def _microslip(data: JointData) -> ContactEffect:
+    """Return the loss of contacts whose rims slip, tangential direction.
+
+    Where several forces were applied at one preload, loss and stiffness are those of
+    cycles up to sliding, whose shape is one more parameter.
+    """
+    loss = Parameter("loss", "-", "loss", 0.0, 50.0, off=0.0, far=(1.0,))
+    shape = Parameter(
+        "exponent",
+        "-",
+        lower=0.2,
+        upper=2.0,
+        starts=(0.5, 1.0),
+        transform=Transform.LOG,
+        prior=(CONTACT.slip_exponent, CONTACT.slip_exponent_sd),
+    )
     return ContactEffect(
         Effect(
             "microslip_damping",
             "friction",
-            (Parameter("loss", "-", "loss", 0.0, 50.0, off=0.0, far=(1.0,)),),
+            (loss, shape) if data.states.several_forces else (loss,),
             source="loss of Cattaneo-Mindlin contacts grows as Q/(mu P): Johnson, "
-            "Contact Mechanics, sec. 7.4",
+            "Contact Mechanics, sec. 7.4; cycles by Masing 1926 with the tangent k (1 "
+            "- Q/(mu P))^m",
             separates={
                 "radiated_damping": "level series: slip grows with the level",
             },
@@ -127,8 +142,27 @@ def _slip_loss(values: FloatArray, joint: LoadedJoint) -> FloatArray:
     found = joint.table.copy()
     stiffness = found[QUANTITIES.index(ContactQuantity.TANGENTIAL)]
     loss = values[0] * relative * lowest / joint.preload
+    if values.size > 1:
+        loss = _loss_of_cycles(loss, float(values[1]))
     found[row] = found[row] + loss * stiffness / joint.omega
     return found
+
+
+def _loss_of_cycles(small: FloatArray, exponent: float) -> FloatArray:
+    """Return energy of a cycle over pi k u^2 from its limit for small forces, (n,).
+
+    The tangent of first loading is k (1 - q)^m, q the force over the one that slides;
+    for small q the loss is 2 m q/(3 pi).
+    """
+    slip = 1.5 * np.pi * small / exponent
+    q = np.clip(slip, CONTACT.least_slip, CONTACT.most_ratio)
+    m = exponent if abs(exponent - 1.0) > CONTACT.near_one else 1.0 - CONTACT.near_one
+    left = np.log1p(-q)
+    way = -np.expm1((1.0 - m) * left) / (1.0 - m)
+    work = way + np.expm1((2.0 - m) * left) / (2.0 - m)
+    loss = (8.0 * work - 4.0 * q * way) / (np.pi * way**2)
+    # Below the least force the loss is in proportion to it, beyond sliding it grows on.
+    return np.asarray(loss * slip / q)
 
 
 def contact_probes(data: JointData) -> tuple[ContactEffect, ...]:

@@ -47,7 +47,7 @@ class ContactLayout:
         assembly: first coordinate of the assemblies.
         own: first coordinate of each quantity's deviation by assembly, -1 for none,
             shape (6,).
-        state: first coordinate of the states.
+        state: first coordinate of the settings of the preload.
     """
 
     names: tuple[str, ...]
@@ -119,9 +119,11 @@ def contact_layout(data: JointData, law: PreloadLaw) -> ContactLayout:
         waves = rows.add("wave_height", "m", CONTACT.wave_height, CONTACT.wave_sd)
     assembly, own = _assemblies(rows, data)
     state = len(rows.names)
-    for k, measured in enumerate(~data.states.by_torque):
+    firsts = np.unique(data.states.settings, return_index=True)[1]
+    for number, k in enumerate(firsts.tolist(), 1):
+        measured = not data.states.by_torque[k]
         sd = data.states.preload_sd[k] if measured else facts.torque_scatter
-        rows.add(f"preload_{k + 1}", "-", 1.0, max(float(sd), 1e-6))
+        rows.add(f"preload_{number}", "-", 1.0, max(float(sd), 1e-6))
     return ContactLayout(
         tuple(rows.names),
         tuple(rows.units),

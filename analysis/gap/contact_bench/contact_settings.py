@@ -66,6 +66,22 @@ class ContactBenchSettings:
         "contacts of one height each on simulated surfaces, seeds 308, 60008, 60023",
         _SWEPT,
     )
+    slip_exponent: float = numerical(
+        0.6,
+        "-",
+        "median of the exponent of the tangential stiffness over the share of sliding",
+        "1/3 for one contact (Mindlin 1949), near 1 for many of random height "
+        "(Bjorklund 1997, J. Tribol. 119, 726)",
+    )
+    slip_exponent_sd: float = numerical(
+        0.5, "-", "prior sd of its logarithm", "1/3 and 1 within about one sd"
+    )
+    least_slip: float = numerical(
+        1e-3, "-", "share of the sliding force below which the loss grows with it"
+    )
+    near_one: float = numerical(
+        1e-6, "-", "distance of an exponent from 1 within which its integral is a log"
+    )
     flattening_error: float = decision(
         0.06,
         "of the excess",

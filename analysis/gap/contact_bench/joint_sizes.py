@@ -49,6 +49,8 @@ def _omega(data: JointData) -> FloatArray:
     if not damped.any():
         return np.ones(omega.size)
     stiff = rows.quantity < 4
+    if not stiff.any():
+        return np.where(np.isnan(omega), 1.0, omega)
     ratio = np.median(rows.value[stiff]) - np.median(rows.value[damped])
     return np.where(np.isnan(omega), CONTACT.loss_factor * np.exp(ratio), omega)
 

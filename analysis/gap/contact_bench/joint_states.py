@@ -45,6 +45,8 @@ class JointStates:
         time: since tightening [s]; NaN where it is not known.
         shear: amplitude of the tangential force during the measurement [N], or NaN.
         frequency: of the vibration that gives the damping [Hz], or NaN.
+        setting: number of the setting of the preload that a state belongs to, from 0
+            without gaps; None where the preload is set for every state.
     """
 
     torque: FloatArray
@@ -55,6 +57,7 @@ class JointStates:
     time: FloatArray
     shear: FloatArray
     frequency: FloatArray
+    setting: IntArray | None = None
 
     def __post_init__(self) -> None:
         """Check shapes and the presence of a torque or preload in each state."""
@@ -62,6 +65,9 @@ class JointStates:
         for name in ("preload", "preload_sd", "assembly", "falling", "time", "shear"):
             require_shape(name, getattr(self, name), (n,))
         require_shape("frequency", self.frequency, (n,))
+        if self.setting is not None:
+            require_shape("setting", self.setting, (n,))
+            freeze(self, "setting")
         lost = np.flatnonzero(np.isnan(self.torque) & np.isnan(self.preload))
         if lost.size:
             raise BadData(
@@ -73,6 +79,20 @@ class JointStates:
                 raise BadData(f"a {name} is not positive; leave unloaded states out")
         freeze(self, "torque", "preload", "preload_sd", "assembly", "falling")
         freeze(self, "time", "shear", "frequency")
+
+    @property
+    def settings(self) -> IntArray:
+        """Number of the setting of the preload of each state, shape (n_states,)."""
+        if self.setting is None:
+            return np.arange(len(self.torque))
+        return self.setting
+
+    @property
+    def several_forces(self) -> bool:
+        """Whether tangential forces of different size act in one setting."""
+        known = np.isfinite(self.shear)
+        pairs = np.column_stack([self.settings, self.shear])[known]
+        return len(np.unique(pairs, axis=0)) > len(np.unique(pairs[:, 0]))
 
     @property
     def by_torque(self) -> BoolArray:

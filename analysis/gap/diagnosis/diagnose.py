@@ -25,6 +25,12 @@ from jointbench.analysis.gap.diagnosis.winner_check import check_winner
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
 from jointbench.analysis.gap.judgement.expected_residual import noise_sd
+from jointbench.analysis.gap.judgement.fit_summaries import (
+    deviations_from_priors,
+    labels_of_fit,
+    largest_deviation,
+    ranked_fits,
+)
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.check_records import Closest, EffectLimit
@@ -35,7 +41,6 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     Finding,
     Gap,
     NamedEffect,
-    Ranked,
 )
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.effect_parameter import Reported
@@ -137,18 +142,14 @@ def conclude(
     found = Diagnosis(
         verdict=finding,
         effects=effects_of(outcome, bench, shown),
-        candidates=_ranked(outcome, bench),
+        candidates=ranked_fits(
+            bench,
+            [outcome.base, *outcome.ranked],
+            lambda f: f.chi2 / bench.blocks.dof,
+        ),
         gap_before=_gap(bench, base, held),
         gap_after=_gap(bench, best, held_after),
-        prior_deviations={
-            name: (float(b), float(a))
-            for name, b, a in zip(
-                bench.base_names,
-                base.prior_deviations,
-                best.prior_deviations,
-                strict=True,
-            )
-        },
+        prior_deviations=deviations_from_priors(bench.base_names, base, best),
         base=_base_estimates(bench, best),
         noise={
             "sigma_min": float(bench.noise.sigma.min()),
@@ -165,7 +166,7 @@ def conclude(
         reason=verdict.reason,
         evidence=evidence,
         explanations=tuple(
-            _labels(f) for f in outcome.level if outcome.acceptance.passed
+            labels_of_fit(f) for f in outcome.level if outcome.acceptance.passed
         ),
         policy=bench.policy,
         scatter=scatter_found(bench),
@@ -195,32 +196,13 @@ def _silent(line: str) -> None:
     """Show no progress."""
 
 
-def _labels(fit: Fit) -> tuple[str, ...]:
-    return tuple(c.label for c in fit.candidates) or ("none",)
-
-
 def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
     return Gap(
         held.gap,
         held.chi2_per_dof,
-        float(np.abs(fit.prior_deviations).max()),
+        largest_deviation(fit),
         bench.views(fit),
         held.words,
-    )
-
-
-def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
-    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
-    first = score(bench, rows[0])
-    return tuple(
-        Ranked(
-            _labels(f),
-            score(bench, f),
-            score(bench, f) - first,
-            f.chi2 / bench.blocks.dof,
-            float(np.abs(f.prior_deviations).max()),
-        )
-        for f in rows
     )
 
 
@@ -267,7 +249,7 @@ def closest_of(outcome: SearchOutcome, bench: NoisyBench) -> Closest | None:
     if not fit.candidates or not np.isfinite(fit.cost):
         return None
     evidence = evidence_of(outcome, bench, fit)
-    return Closest(_labels(fit), confidence_of(evidence), evidence)
+    return Closest(labels_of_fit(fit), confidence_of(evidence), evidence)
 
 
 def effects_of(
@@ -281,7 +263,9 @@ def effects_of(
     for fit in fits:
         evidence = evidence_of(outcome, bench, fit)
         confidence = confidence_of(evidence) / len(fits)
-        for k, (label, term) in enumerate(zip(_labels(fit), fit.terms, strict=True)):
+        for k, (label, term) in enumerate(
+            zip(labels_of_fit(fit), fit.terms, strict=True)
+        ):
             if label in found:
                 one = found[label]
                 found[label] = replace(one, confidence=one.confidence + confidence)

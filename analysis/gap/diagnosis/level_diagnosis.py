@@ -15,6 +15,12 @@ from jointbench.analysis.gap.diagnosis.level_verdict import level_verdict
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.partial_verdict import under_model_error
 from jointbench.analysis.gap.diagnosis.single_record import StretchScore
+from jointbench.analysis.gap.judgement.fit_summaries import (
+    deviations_from_priors,
+    labels_of_fit,
+    largest_deviation,
+    ranked_fits,
+)
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.modal_bench.base_from_records import (
     BaseRequest,
@@ -29,14 +35,13 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     Estimate,
     Finding,
     Gap,
-    Ranked,
 )
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
-from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.search.selection_round import Progress
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,18 +128,14 @@ def _conclude(outcome: SearchOutcome, bench: ModalBench, say: Progress) -> Diagn
     return Diagnosis(
         verdict=finding,
         effects=effects_of(outcome, bench, shown),
-        candidates=_ranked(outcome, bench),
+        candidates=ranked_fits(
+            bench,
+            [outcome.base, *outcome.ranked],
+            lambda f: f.chi2 / bench.blocks.dof,
+        ),
         gap_before=_gap(bench, base, held),
         gap_after=_gap(bench, best, after),
-        prior_deviations={
-            name: (float(b), float(a))
-            for name, b, a in zip(
-                bench.base_names,
-                base.prior_deviations,
-                best.prior_deviations,
-                strict=True,
-            )
-        },
+        prior_deviations=deviations_from_priors(bench.base_names, base, best),
         base=_base_estimates(bench, best),
         noise={
             "sigma_min": float(bench.sigma.min()),
@@ -150,35 +151,16 @@ def _conclude(outcome: SearchOutcome, bench: ModalBench, say: Progress) -> Diagn
         experiment=verdict.step,
         reason=verdict.reason,
         explanations=tuple(
-            _labels(f) for f in outcome.level if outcome.acceptance.passed
+            labels_of_fit(f) for f in outcome.level if outcome.acceptance.passed
         ),
         policy=bench.policy,
         partial=partial,
     )
 
 
-def _labels(fit: Fit) -> tuple[str, ...]:
-    return tuple(c.label for c in fit.candidates) or ("none",)
-
-
 def _gap(bench: ModalBench, fit: Fit, held: HeldOut) -> Gap:
-    deviation = float(np.abs(fit.prior_deviations).max())
+    deviation = largest_deviation(fit)
     return Gap(held.gap, held.chi2_per_dof, deviation, bench.views(fit))
-
-
-def _ranked(outcome: SearchOutcome, bench: ModalBench) -> tuple[Ranked, ...]:
-    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
-    first = score(bench, rows[0])
-    return tuple(
-        Ranked(
-            _labels(f),
-            score(bench, f),
-            score(bench, f) - first,
-            f.chi2 / bench.blocks.dof,
-            float(np.abs(f.prior_deviations).max()),
-        )
-        for f in rows
-    )
 
 
 def _base_estimates(bench: ModalBench, fit: Fit) -> tuple[Estimate, ...]:

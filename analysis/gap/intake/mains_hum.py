@@ -75,8 +75,10 @@ def mains_hum(starts: FloatArray, sample_rate: float) -> MainsHum:
         sample_rate: [Hz].
     """
     white = np.sqrt(np.mean(np.diff(starts, axis=1) ** 2, axis=1) / 2)
-    scaled = starts / np.maximum(white, 1e-300)[:, None]
-    excess = float(np.median(np.var(scaled, axis=1))) - 1.0
+    # A trace that never moves is a lost cable or a full converter: it shows no hum.
+    moving = white > 0
+    scaled = starts[moving] / white[moving, None]
+    excess = float(np.median(np.var(scaled, axis=1))) - 1.0 if moving.any() else 0.0
     amplitude = float(np.sqrt(2.0 * max(excess, HITS.least_hum)))
     count = starts.shape[1]
     tried = []

@@ -223,6 +223,7 @@ def joined_states(old: JointStates, new: JointStates) -> JointStates:
         time=both("time"),
         shear=both("shear"),
         frequency=both("frequency"),
+        setting=np.concatenate([old.settings, new.settings + old.settings.max() + 1]),
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sites at bodies, feet, points and channels of a structure."""
+"""Sites at bodies, feet and points of a structure."""
 
 from jointbench.analysis.gap.model.effect import Site
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign

@@ -12,7 +12,7 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
-from jointbench.analysis.gap.structure_bench.channel_sites import (
+from jointbench.analysis.gap.structure_bench.sensor_sites import (
     each_channel,
     movable_channels,
     movable_points,

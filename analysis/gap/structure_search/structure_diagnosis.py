@@ -11,18 +11,23 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.diagnosis.diagnose import closest_of, effects_of
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
+from jointbench.analysis.gap.judgement.fit_summaries import (
+    deviations_from_priors,
+    labels_of_fit,
+    largest_deviation,
+    ranked_fits,
+)
 from jointbench.analysis.gap.judgement.held_out import hold_out_by_steps
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
     Estimate,
     Finding,
     Gap,
-    Ranked,
 )
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
@@ -121,18 +126,14 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
     return Diagnosis(
         verdict=verdict.finding,
         effects=effects_of(outcome, bench, shown),
-        candidates=_ranked(found),
+        candidates=ranked_fits(
+            bench,
+            [outcome.base, *outcome.ranked],
+            lambda f: f.chi2 / bench.blocks.dof,
+        ),
         gap_before=before,
         gap_after=before if best is base else _gap(on, best),
-        prior_deviations={
-            name: (float(b), float(a))
-            for name, b, a in zip(
-                bench.base_names,
-                base.prior_deviations,
-                best.prior_deviations,
-                strict=True,
-            )
-        },
+        prior_deviations=deviations_from_priors(bench.base_names, base, best),
         base=_base_estimates(bench, best),
         noise={
             "sigma_min": float(on.sigma.min()),
@@ -147,7 +148,7 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
         ),
         experiment=verdict.step,
         reason=verdict.reason,
-        explanations=tuple(_labels(f) for f in outcome.level if accepted),
+        explanations=tuple(labels_of_fit(f) for f in outcome.level if accepted),
         policy=bench.policy,
         closest=closest_of(outcome, bench),
     )
@@ -175,31 +176,11 @@ def _verdict(outcome: SearchOutcome, bench: StructureBench) -> DiagnosisVerdict:
     return DiagnosisVerdict(Finding.AMBIGUOUS, reason, OTHER_POINTS)
 
 
-def _labels(fit: Fit) -> tuple[str, ...]:
-    return tuple(c.label for c in fit.candidates) or ("none",)
-
-
 def _gap(bench: StructureBench, fit: Fit) -> Gap:
     held = hold_out_by_steps(fit, bench.blocks)
-    deviation = float(np.abs(fit.prior_deviations).max())
+    deviation = largest_deviation(fit)
     views = bench.views(fit)
     return Gap(held.gap, held.chi2_per_dof, deviation, views, held.words)
-
-
-def _ranked(found: StructureOutcome) -> tuple[Ranked, ...]:
-    bench, outcome = found.bench, found.outcome
-    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
-    first = score(bench, rows[0])
-    return tuple(
-        Ranked(
-            _labels(f),
-            score(bench, f),
-            score(bench, f) - first,
-            f.chi2 / bench.blocks.dof,
-            float(np.abs(f.prior_deviations).max()),
-        )
-        for f in rows
-    )
 
 
 def _base_estimates(bench: StructureBench, fit: Fit) -> tuple[Estimate, ...]:

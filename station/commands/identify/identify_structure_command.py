@@ -10,17 +10,13 @@ from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.analysis.lumped.identified import IdentificationVerdict
 from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
-    structure_json,
 )
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.joints.contact_comparison import (
-    theory_json,
-)
 from jointbench.station.joints.hypothesis_output import (
-    hypotheses_json,
     hypothesis_section,
     show_hypotheses,
 )
+from jointbench.station.joints.identified_json import identified_json
 from jointbench.station.joints.identify_run import identified_structure
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import parameter_table
@@ -58,10 +54,7 @@ def run_identify_structure(
     show_structure(result, json_target)
     show_hypotheses(done.hypotheses, json_target)
     show_theory(rows, json_target)
-    content = structure_json(result, done.reduced.names)
-    if done.hypotheses:
-        content["hypotheses"] = hypotheses_json(done.hypotheses)
-    write_json(json_target, content | ({"theory": theory_json(rows)} if rows else {}))
+    write_json(json_target, identified_json(done))
     if report is not None:
         from jointbench.station.report.structure_report import write_structure_report
 
@@ -72,6 +65,7 @@ def run_identify_structure(
             done.reduced,
             result,
             (hypothesis_section(done.hypotheses), theory_section(rows)),
+            simulated=any(one.simulated for one in done.measured.values()),
         )
     return result.verdict is not IdentificationVerdict.INCONSISTENT and all(
         one.agrees for one in result.full_check

@@ -125,20 +125,25 @@ def test_stiffness_known_beforehand_chooses_between_the_two_solutions():
     assert_allclose(result.parameter("joint.stiffness").value, 1.6e7, rtol=1e-6)
 
 
-def test_standard_deviations_are_those_of_repeated_measurements():
-    """60 noisy benches: deviations over their sd have unit variance, 4 parameters."""
-    deviations = []
+def test_uncertainties_are_those_of_repeated_measurements():
+    """60 noisy benches: unit variance over the sd, four over the covariance."""
+    deviations, distances = [], []
     for seed in range(60):
         result = identify_links(TRUTH, measure(TRUTH, seed=seed), starts=2)
+        found = result.parameters
         deviations.append(
             [
                 (one.value - true) / one.sd
-                for one, true in zip(result.parameters, VALUES, strict=True)
+                for one, true in zip(found, VALUES, strict=True)
             ]
         )
+        off = np.log(np.array([one.value for one in found]) / VALUES)
+        distances.append(off @ np.linalg.solve(result.log_covariance, off))
     spread = np.sqrt(np.mean(np.square(deviations), axis=0))
     # Rms of 60 unit normals: 1 +- 0.09; inflation by chi2 lowers it a little.
     assert np.all((spread > 0.65) & (spread < 1.3))
+    # The mean of 60 draws of chi2 with four degrees has an sd of 0.37.
+    assert 2.2 < np.mean(distances) < 5.2
 
 
 def test_the_uncertainty_of_the_masses_enters_that_of_the_stiffness(precise):

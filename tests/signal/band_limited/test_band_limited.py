@@ -115,6 +115,15 @@ def test_intervals_cover_h_roll_off_and_moments():
     assert np.sum(hits, axis=0).min() >= 4
 
 
+def test_noise_whose_likeliest_size_is_nothing_may_still_be_there():
+    """The draws have models with it, of less weight than those without."""
+    fit = fit_band_limited([exponential(3000, 60, 1)])
+    assert fit.noise == 0
+    noisy = np.array([model.noise > 0 for model in fit.draws.models])
+    share = float(np.sum(np.array(fit.draws.weight)[noisy]))
+    assert 0.01 < share < 0.5
+
+
 def test_exponential_correlation_of_400_of_16000_points_is_saturated():
     """2 pi 400 points is the roll-off; H is 1/2."""
     fit = fit_band_limited([exponential(16_000, 400, 1)])

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
+from jointbench.signal.fractal.map_covariance import map_sums
 from jointbench.signal.fractal.structure_covariance import structure_covariance
 from jointbench.signal.surface.structure_function import structure_function
 
@@ -62,6 +63,30 @@ def test_a_map_agrees_with_the_full_sum_over_rows():
             total += np.count_nonzero(np.abs(e) == across) * float(np.mean(c**2))
         expected = 2 * total / rows**2 / noisy_power(np.array([float(a)]))[0] ** 2
         assert found[i, i] == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("row_distance", [0.4, 1.0, 2.5])
+def test_a_map_agrees_with_the_full_sum_for_lags_of_all_lengths(row_distance: float):
+    """80 rows of 120 points, even and odd lags: each entry within 5e-4."""
+    rows, points, lags = 80, 120, np.array([1, 2, 5, 12, 24])
+    sums = map_sums(lags, points, rows, row_distance)
+    found = sums.covariance(noisy_power(sums.distance))
+    across = np.arange(rows)
+    weight = np.where(across > 0, 2, 1) * (rows - across) / rows**2
+    row = row_distance * across[:, None]
+    for i, a in enumerate(lags):
+        for j, b in enumerate(lags[i:], start=i):
+            d = np.arange(a - points + 1, points - b)
+            pairs = np.minimum(points - a, points - b - d) - np.maximum(0, -d)
+            c = 0.5 * (
+                noisy_power(np.hypot(d - a, row))
+                + noisy_power(np.hypot(d + b, row))
+                - noisy_power(np.hypot(d, row))
+                - noisy_power(np.hypot(d + b - a, row))
+            )
+            expected = 2 * weight @ (c**2 @ pairs) / ((points - a) * (points - b))
+            assert found[i, j] == pytest.approx(expected, rel=5e-4)
+            assert found[j, i] == found[i, j]
 
 
 def test_random_walks_scatter_as_predicted():

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marble_block import block_frequencies, block_recording, marble_block
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import write_session
 from jointbench.analysis.gap.chain.moved_quantities import MovedStiffness
@@ -14,21 +14,7 @@ from jointbench.station.chain.identified_chain import moved_body_modes, read_ide
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.structure_model import StructureModel
 
-MODEL = """
-[materials.marble]
-youngs_modulus = "55 GPa"
-poisson_ratio = 0.25
-density = "2600 kg/m^3"
-
-[bodies.block]
-box = ["200 mm", "100 mm", "50 mm"]
-cells = [2, 1, 1]
-material = "marble"
-
-[joints.bed]
-between = ["block", "ground"]
-face = "z-"
-
+MODEL = marble_block("""
 [identify]
 data = "frequencies"
 modes = 6
@@ -46,53 +32,20 @@ area = "200 cm^2"
 modulus = "55 GPa"
 poisson = 0.25
 hardness = "1.5 GPa"
-"""
-RATE = 4096.0
-MASS = 2600.0 * 0.2 * 0.1 * 0.05
+""")
 PRELOAD = np.array([2e3, 6e3, 18e3])
 STIFFNESS = np.array([2.0e6, 3.2e6, 4.8e6])
-
-
-def frequencies(stiffness: float) -> np.ndarray:
-    """Return those of a rigid block on normal springs whose foot cannot slide [Hz].
-
-    It rocks about either edge of its foot, and moves up and down: k l^2/12 against
-    m (l^2/12 + h^2/3).
-    """
-    lengths, height = np.array([0.1, 0.2]), 0.05
-    share = (lengths**2 / 12) / (lengths**2 / 12 + height**2 / 3)
-    return np.sqrt(np.append(share, 1.0) * stiffness / MASS) / (2 * np.pi)
-
-
-def recording(number: int) -> Recording:
-    """Return three hits on a corner of the block at one preload."""
-    rng, time = np.random.default_rng(number), np.arange(int(3 * RATE)) / RATE
-    force, rings = (rng.normal(0.0, 1e-3, time.size) for _ in range(2))
-    for begin in (0.1, 1.1, 2.1):
-        since = time - begin
-        on = (since >= 0.0) & (since < 0.001)
-        force[on] += 50.0 * np.sin(np.pi * since[on] / 0.001)
-        late = np.maximum(since - 0.0005, 0.0)
-        for one in 2 * np.pi * frequencies(float(STIFFNESS[number])):
-            wave = np.exp(-0.01 * one * late) * np.sin(one * late)
-            rings += 5.0 * wave * (since > 0.0005)
-    channels = (
-        Channel("force", Quantity.FORCE, point="1"),
-        Channel("a1", Quantity.ACCELERATION, point="1"),
-    )
-    return Recording(
-        f"run-{number}",
-        np.array([force, rings]),
-        RATE,
-        channels,
-        preload=float(PRELOAD[number]),
-    )
 
 
 def written(folder: Path) -> tuple[Path, Path]:
     """Write session and model."""
     session, model = folder / "block.h5", folder / "block.toml"
-    rows = tuple(map(recording, range(PRELOAD.size)))
+    rows = tuple(
+        block_recording(number, stiffness, preload)
+        for number, (stiffness, preload) in enumerate(
+            zip(STIFFNESS.tolist(), PRELOAD.tolist(), strict=True)
+        )
+    )
     write_session(
         Session("1", "2026-01-01T00:00:00Z", "test", True, recordings=rows), session
     )
@@ -116,7 +69,7 @@ def test_a_meshed_block_gives_the_stiffness_of_its_joint_over_the_preload(
         found,
         MovedStiffness(PRELOAD, read, 0 * read, 4 * read, read, 0 * read),
     )
-    assert moved[0].after == pytest.approx(frequencies(STIFFNESS[0]), rel=0.005)
+    assert moved[0].after == pytest.approx(block_frequencies(STIFFNESS[0]), rel=0.005)
     assert moved[0].before == pytest.approx(2 * moved[0].after, rel=0.02)
 
 

@@ -22,7 +22,7 @@ from jointbench.station.archive.trends import (
     fit_with_scatter,
     trends_of,
 )
-from jointbench.station.commands.archive_command import ways_of
+from jointbench.station.commands.archive_command import torque_words, ways_of
 from jointbench.station.files.archive_patterns import result_files
 from jointbench.station.results.result_rows import ResultQuantity
 from jointbench.station.results.results_read import is_results, without_copies
@@ -156,6 +156,35 @@ def test_one_table_opens_in_pandas_and_xarray(make_session, tmp_path: Path) -> N
         assert np.allclose(frame["torque"], 20.0)
         wanted = [row.value for row in rows]
         assert np.array_equal(frame["value"].to_numpy(float), wanted, equal_nan=True)
+
+
+def test_a_trend_over_days_is_not_hidden_by_two_torques(
+    make_session, tmp_path: Path
+) -> None:
+    """A frequency that falls at both torques; torques that were read are not apart."""
+    made = table_rows(two_recipes(make_session, tmp_path)[0][:1])
+    one = next(row for row in made if row.name == "natural_frequency")
+    rows = [
+        replace(
+            one,
+            torque=torque,
+            day=float(day),
+            input_sha256=f"{torque} {day}",
+            value=f - 0.1 * day,
+            sd=1e-3,
+        )
+        for day in range(4)
+        for torque, f in ((20.0, 700.0), (50.0, 900.0))
+    ]
+    words = torque_words(rows)
+    assert words == {20.0: " at 20 N m", 50.0: " at 50 N m"}
+    found = trends_of([Trend.point(r, "day", "", words[r.torque]) for r in rows])
+    assert [trend.count for trend in found] == [4, 4]
+    assert all(trend.significance > 100 for trend in found)
+    together = trends_of([Trend.point(row, "day") for row in rows])
+    assert together[0].significance < 1
+    read = [replace(row, torque=20.0 + k / 10) for k, row in enumerate(rows)]
+    assert torque_words(read) == torque_words(rows[::2]) == {}
 
 
 def test_a_trend_finds_the_slope_it_was_given() -> None:

@@ -4,35 +4,13 @@ import json
 from pathlib import Path
 
 import pytest
+from marble_block import PRINTED, marble_block
 
 from jointbench.station.main import app
 from jointbench.station.screen.exit_codes import EXIT_BAD_DATA, EXIT_USAGE, exit_code
 from jointbench.station.screen.joint_text import interval_text
 
-BLOCKS = """
-[materials.marble]
-youngs_modulus = "55 GPa"
-poisson_ratio = 0.25
-density = "2600 kg/m^3"
-
-[bodies.block]
-box = ["200 mm", "100 mm", "50 mm"]
-cells = [2, 1, 1]
-material = "marble"
-
-[joints.bed]
-between = ["block", "ground"]
-face = "z-"
-
-[measured]
-frequencies = ["195 Hz", "480 Hz", "520 Hz"]
-relative_sd = "0.2 %"
-
-[identify]
-data = "frequencies"
-modes = 6
-stiffness_box = ["1 MN/m", "1 GN/m"]
-"""
+BLOCKS = marble_block(PRINTED)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:

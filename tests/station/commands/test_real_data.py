@@ -109,9 +109,7 @@ def test_a_real_laser_map_written_as_keyence_csv_gets_a_verdict(
         scan = topography.read_topography(str(path))
         heights = np.ma.asarray(scan.heights()).T
     length = scan.physical_sizes[0] / heights.shape[1]
-    heights = heights[
-        :384, :512
-    ]  # a quarter takes the same way in a quarter of the time
+    heights = heights[:192, :256]  # a small part takes the same way in less time
     factor = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}[
         scan.unit
     ]

@@ -3,23 +3,9 @@
 from pathlib import Path
 
 import pytest
+from marble_block import marble_block
 
-BLOCK = """
-[materials.marble]
-youngs_modulus = "55 GPa"
-poisson_ratio = 0.25
-density = "2600 kg/m^3"
-loss_factor = 0.01
-
-[bodies.block]
-box = ["200 mm", "100 mm", "50 mm"]
-cells = [2, 1, 1]
-material = "marble"
-
-[joints.bed]
-between = ["block", "ground"]
-face = "z-"
-
+DESIGN = """
 [identify]
 modes = 10
 stiffness_box = ["1 MN/m", "1 GN/m"]
@@ -53,7 +39,7 @@ POINTS = [
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
     """A block on a bed, with five points within reach."""
-    text = BLOCK + "".join(
+    text = marble_block(DESIGN, loss_factor=0.01) + "".join(
         f'\n[reachable.{name}]\nbody = "block"\ndirection = {list(way)}\n'
         f"position = {[f'{x} mm' for x in at]}\n"
         for name, at, way in POINTS

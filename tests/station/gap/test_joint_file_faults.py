@@ -7,8 +7,11 @@ import pytest
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.contact_bench.contact_bench import make_contact_bench
-from jointbench.station.gap.joint_state_files import read_joint
-from jointbench.station.gap.joint_state_tables import read_covariance, read_state_table
+from jointbench.station.joint_states.joint_state_files import read_joint
+from jointbench.station.joint_states.joint_state_tables import (
+    read_covariance,
+    read_state_table,
+)
 
 JOINT = """
 table = "states.csv"

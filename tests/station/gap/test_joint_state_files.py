@@ -1,14 +1,22 @@
 """Joints over their preload from TOML, tables and identifications; the command."""
 
 import json
+import runpy
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.station.examples.example_sets import write_example
 from jointbench.station.gap.gap_inputs import GapRequest, examine
-from jointbench.station.gap.joint_state_files import names_states, read_joint
+from jointbench.station.joint_states.joint_state_files import (
+    loops_of,
+    names_states,
+    read_joint,
+)
+from jointbench.station.joint_states.loop_files import read_loop
 
 HEAD = """
 [joint]
@@ -136,3 +144,135 @@ def test_options_of_hits_do_not_apply_to_a_joint_file(tmp_path: Path) -> None:
     path = _written(tmp_path, HEAD + STATES)
     with pytest.raises(UsageError, match="leave --model and --preload out"):
         examine([str(path)], GapRequest(preload=1.0), progress=lambda line: None)
+
+
+@pytest.fixture(scope="module")
+def loops(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the example of loops, and make its files."""
+    folder = write_example("loops", tmp_path_factory.mktemp("example") / "loops")
+    runpy.run_path(str(folder / "rough_loops.py"))["write_loops"](folder)
+    return folder
+
+
+def _with_loop(folder: Path, loops: Path, state: str) -> Path:
+    """Return a joint file with one state beside those of `STATES`, and its loop."""
+    shutil.copy(loops / "loop-02.csv", folder / "loop.csv")
+    plain = STATES.replace(
+        'cn = "400 N s/m"\n', 'cn = "400 N s/m"\nfrequency = "9 Hz"\n'
+    )
+    plain = plain.replace(', ct = "side.damping"', "")
+    return _written(folder, f"{HEAD}{plain}\n[[states]]\n{state}\n")
+
+
+def test_a_loop_is_stiffness_and_damping_of_one_setting(
+    tmp_path: Path, loops: Path
+) -> None:
+    """kt, then ct by amplitude; their calibration is common to them."""
+    state = 'torque = "9 N m"\nkn = "2e9 N/m"\nloop = "loop.csv"\nloop_sd = "2 %"\n'
+    path = _with_loop(tmp_path, loops, state + 'frequency = "0.1 Hz"')
+    data, _ = read_joint(path)
+    rows, states = data.rows, data.states
+    (loop,) = loops_of([path])
+    own = rows.state >= 3
+    assert rows.quantity[own].tolist() == [0, 1, 5, 5, 5]
+    assert states.settings[rows.state[own]].tolist() == [3, 3, 3, 3, 3]
+    found = loop.found
+    assert np.exp(rows.value[own][1]) == pytest.approx(found.stiffness)
+    level = found.levels[-1]
+    assert np.exp(rows.value[own][-1]) == pytest.approx(level.damping(0.1))
+    assert states.shear[-1] == pytest.approx(level.force)
+    assert states.shear[rows.state[own][1]] < 1e-2 * level.force
+    part = rows.covariance[np.ix_(own, own)]
+    assert part[1, 0] == 0.0
+    np.testing.assert_allclose(part[2:, 1], 0.02**2)
+    expected = level.energy_sd**2 + 0.05**2 + 0.02**2
+    assert part[-1, -1] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("state", "words"),
+    [
+        ('loop = "loop.csv"', "a loop needs the frequency of its cycles"),
+        (
+            'loop = "loop.csv"\nfrequency = "1 Hz"\nkt = "1e9 N/m"',
+            "kt and ct of this state are those of its loop",
+        ),
+        ('loop = "lost.csv"\nfrequency = "1 Hz"', "lost.csv"),
+    ],
+)
+def test_states_with_a_loop_that_cannot_be_used_are_one_line(
+    tmp_path: Path, loops: Path, state: str, words: str
+) -> None:
+    """What is wrong, and what to write."""
+    path = _with_loop(tmp_path, loops, f'torque = "9 N m"\n{state}')
+    with pytest.raises(BadData, match=words) as caught:
+        read_joint(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_damping_beside_a_loop_needs_its_frequency(tmp_path: Path, loops: Path) -> None:
+    """Slow cycles and vibrations damp by different coefficients."""
+    state = 'torque = "9 N m"\nloop = "loop.csv"\nfrequency = "0.1 Hz"'
+    path = _with_loop(tmp_path, loops, state)
+    text = path.read_text(encoding="utf-8").replace('frequency = "9 Hz"', "")
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(BadData, match="state 1 has damping without its frequency"):
+        read_joint(path)
+
+
+@pytest.mark.parametrize(
+    ("csv", "words"),
+    [
+        ("displacement,force:N\n1,2\n", "has no unit; write it as a displacement"),
+        ("displacement:um,force:um\n1,2\n", "not of force"),
+        ("place:um,force:N\n1,2\n", "0 columns 'displacement'"),
+        ("displacement:um,force:N\n1;2\n", "1 cells below 2 columns"),
+        ("displacement:um,force:N\n1,none\n", "'none' is no number"),
+        ("displacement:um,force:N\n1,nan\n", "'nan' is no number"),
+        ("displacement:um,force:N\n1,2\n", "the loop has 1 samples"),
+        ("", "is empty"),
+    ],
+)
+def test_faults_of_a_file_of_a_loop_are_one_line(
+    tmp_path: Path, csv: str, words: str
+) -> None:
+    """File, row, value and the way out."""
+    path = tmp_path / "loop.csv"
+    path.write_text(csv, encoding="utf-8")
+    with pytest.raises(BadData, match=words) as caught:
+        read_loop(path)
+    assert "\n" not in str(caught.value)
+    assert "loop.csv" in str(caught.value)
+
+
+def test_values_of_one_identification_have_its_correlation(tmp_path: Path) -> None:
+    """Its covariance of the logarithms, scaled to the sd by the intervals."""
+    path = _written(tmp_path, HEAD + STATES)
+    result = json.loads((tmp_path / "joint.json").read_text(encoding="utf-8"))
+    side = {"value": 9e9, "sd": 9e8, "interval_95": [7.4e9, 10.9e9]}
+    result["parameters"]["side.stiffness"] = {**side, "identifiable": True}
+    covariance = [[0.0025, -0.004, 0.0], [-0.004, 0.01, 0.0], [0.0, 0.0, 1.0]]
+    result["log_covariance"] = covariance
+    (tmp_path / "joint.json").write_text(json.dumps(result), encoding="utf-8")
+    rows = read_joint(path)[0].rows
+    assert rows.quantity[-2:].tolist() == [0, 1]
+    sd = np.sqrt(np.diag(rows.covariance))
+    factor = rows.covariance[-2, -1] / (sd[-2] * sd[-1])
+    assert factor == pytest.approx(-0.8)
+    assert sd[-1] == pytest.approx(np.log(10.9 / 7.4) / (2 * 1.959964))
+    result["log_covariance"] = covariance[:2]
+    (tmp_path / "joint.json").write_text(json.dumps(result), encoding="utf-8")
+    with pytest.raises(BadData, match="must have 3 rows and columns"):
+        read_joint(path)
+
+
+def test_the_example_of_loops_names_micro_slip_and_draws_its_loops(
+    loops: Path,
+) -> None:
+    """Losses that grow with the force are those of friction."""
+    path = str(loops / "joint-loops.toml")
+    done = examine([path], GapRequest(), progress=lambda line: None)
+    assert [e.name for e in done.found.effects] == ["microslip_damping"]
+    assert [s.anchor for s in done.sections] == ["joint", "held-out", "loops"]
+    assert len(done.remarks) == 4
+    assert "tangential stiffness" in done.remarks[0]

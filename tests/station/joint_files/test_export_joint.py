@@ -4,7 +4,10 @@ import json
 from pathlib import Path
 
 import pytest
+from marble_block import marble_block
 
+import jointbench as jb
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.main import app
 from jointbench.station.screen.exit_codes import (
     EXIT_BAD_DATA,
@@ -12,21 +15,7 @@ from jointbench.station.screen.exit_codes import (
     exit_code,
 )
 
-BLOCKS = """
-[materials.marble]
-youngs_modulus = "55 GPa"
-poisson_ratio = 0.25
-density = "2600 kg/m^3"
-
-[bodies.block]
-box = ["200 mm", "100 mm", "50 mm"]
-cells = [2, 1, 1]
-material = "marble"
-
-[joints.bed]
-between = ["block", "ground"]
-face = "z-"
-
+BLOCKS = marble_block("""
 [sensors.a1]
 body = "block"
 position = ["200 mm", "100 mm", "50 mm"]
@@ -36,7 +25,7 @@ mass = "10 g"
 [identify]
 known = { "bed.tangential_2" = "40 MN/m" }
 sought = ["bed.normal", "bed.tangential_1"]
-"""
+""")
 
 
 def one(value: float, unit: str = "N/m") -> dict[str, object]:
@@ -102,6 +91,28 @@ def test_a_joint_goes_to_all_programs_with_its_uncertainty_and_a_drawing(
     page = (out / "bed.html").read_text(encoding="utf-8")
     assert page.count('class="solid"') == 1
     assert page.count(">t2</text>") == 2
+
+
+def test_a_script_writes_what_the_command_writes(
+    monkeypatch: pytest.MonkeyPatch, files: tuple[Path, Path], tmp_path: Path
+) -> None:
+    """The same files; the pieces as records, the drawing last."""
+    words = ("--state", "low", "--to", "table,nastran", "--pieces", "2,1")
+    assert run(monkeypatch, *files, "--out", tmp_path / "command", *words) == 0
+    out = tmp_path / "script"
+    done = jb.export_joint(
+        *files, out, state="low", to=["table", "nastran"], pieces=(2, 1)
+    )
+    assert done.faithful
+    assert [path.parent for path in done.files] == [out] * 5
+    for path in done.files[:-1]:
+        assert path.read_bytes() == (tmp_path / "command" / path.name).read_bytes()
+    assert sum(one.stiffness[0, 0] for one in done.pieces) == pytest.approx(3e8)
+    assert "bed-nastran.bdf" in str(done)
+    with pytest.raises(UsageError, match="no program 'adina'"):
+        jb.export_joint(*files, out, to=["adina"])
+    with pytest.raises(UsageError, match="give a list"):
+        jb.export_joint(*files, out, to="table")
 
 
 def test_a_law_of_gap_joins_the_files(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from contact_cases import joint_case
+from marble_block import PRINTED, marble_block
 from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.predict import predict_contact
@@ -26,29 +27,7 @@ from jointbench.station.main import app
 from jointbench.station.report.theory_section import theory_section
 from jointbench.station.screen.exit_codes import EXIT_BAD_DATA, EXIT_USAGE, exit_code
 
-MODEL = """
-[materials.marble]
-youngs_modulus = "55 GPa"
-poisson_ratio = 0.25
-density = "2600 kg/m^3"
-
-[bodies.block]
-box = ["200 mm", "100 mm", "50 mm"]
-cells = [2, 1, 1]
-material = "marble"
-
-[joints.bed]
-between = ["block", "ground"]
-face = "z-"
-
-[measured]
-frequencies = ["195 Hz", "480 Hz", "520 Hz"]
-
-[identify]
-data = "frequencies"
-modes = 6
-stiffness_box = ["1 MN/m", "1 GN/m"]
-"""
+MODEL = marble_block(PRINTED)
 CONTACT = """
 [contact]
 modulus = "29.3 GPa"

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -138,18 +139,6 @@ def test_an_archive_is_one_table(make_session: Maker, tmp_path: Path) -> None:
     assert "natural_frequency" in table.write(tmp_path / "all.csv").read_text()
 
 
-def test_a_campaign_with_nothing_hidden_misses_nothing(tmp_path: Path) -> None:
-    """Record, diagnose, report: the model beside the session is found."""
-    url = "sim:two-body-campaign?seed=5&grid=small"
-    measured = jb.record(url, tmp_path / "c.h5")
-    assert measured.model == tmp_path / "c.toml"
-    found = jb.gap(measured)
-    assert found.verdict == "none"
-    assert found.effects == ()
-    assert found.to_dict()["verdict"] == "none"
-    assert "</html>" in found.write_report(tmp_path / "g.html").read_text()
-
-
 def test_joints_are_identified_by_name(make_session: Maker, tmp_path: Path) -> None:
     """A parameter by its name, with interval; a wrong name lists the known ones."""
     model = tmp_path / "bench.toml"
@@ -165,14 +154,24 @@ def test_joints_are_identified_by_name(make_session: Maker, tmp_path: Path) -> N
 def test_the_scripts_of_the_page_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """From hits to modes, to a verdict, and to the table of an archive."""
+    """From hits to modes, to a verdict, and to the table of an archive.
+
+    Nothing is hidden in the campaign: its model is found beside the session, and
+    nothing is missing.
+    """
     page = (Path(__file__).parents[3] / "docs" / "library.md").read_text()
     scripts = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
     monkeypatch.chdir(tmp_path)
-    names: dict[str, object] = {}
+    names: dict[str, Any] = {}
     for script in scripts:
         exec(compile(script, "library.md", "exec"), names)
     assert (tmp_path / "all.csv").exists()
+    assert names["campaign"].model == Path("campaign.toml")
+    found = names["found"]
+    assert (found.verdict, found.effects) == ("none", ())
+    assert found.to_dict()["verdict"] == "none"
+    report = (tmp_path / "gap.html").read_text()
+    assert "</html>" in report and "Simulated instruments" in report
 
 
 BENCH = """

@@ -4,14 +4,16 @@ import ast
 import os
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
-from types import CodeType, FrameType
+from types import FrameType
 
 import h5py
 import pytest
 
+from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.session_file.store import read_session
-from jointbench.station.archive.process_file import result_key
+from jointbench.station.archive.process_file import Task, process_task, result_key
 from jointbench.station.pipeline import code_version
 from jointbench.station.pipeline.code_version import (
     CALLERS,
@@ -71,21 +73,26 @@ def test_a_change_of_a_module_of_a_stage_changes_its_key_and_no_other(
 def test_imports_are_found_as_the_parser_finds_them(stage: str) -> None:
     """Inside functions, over several lines, of whole modules: none is missed."""
     for name in stage_sources(stage):
-        source = code_version.source_of(name)
-        assert source is not None, name
-        wanted: set[str] = set()
-        for node in ast.walk(ast.parse(source)):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                below = [f"{node.module}.{alias.name}" for alias in node.names]
-                wanted |= {node.module, *below}
-            elif isinstance(node, ast.Import):
-                wanted |= {alias.name for alias in node.names}
-        ours = {
-            one
-            for one in wanted
-            if one.startswith("jointbench.") and code_version.source_of(one) is not None
-        }
-        assert ours <= set(imports_of(name)), name
+        assert parsed_imports(name) <= set(imports_of(name)), name
+
+
+@cache
+def parsed_imports(name: str) -> frozenset[str]:
+    """Return the product modules that a module imports; stages share most of them."""
+    source = code_version.source_of(name)
+    assert source is not None, name
+    wanted: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            below = [f"{node.module}.{alias.name}" for alias in node.names]
+            wanted |= {node.module, *below}
+        elif isinstance(node, ast.Import):
+            wanted |= {alias.name for alias in node.names}
+    return frozenset(
+        one
+        for one in wanted
+        if one.startswith("jointbench.") and code_version.source_of(one) is not None
+    )
 
 
 def test_every_stage_that_is_run_names_its_modules() -> None:
@@ -119,7 +126,7 @@ def test_all_of_our_code_that_runs_in_a_stage_is_in_its_version(make_session) ->
 
             def enter(frame: FrameType, event: str, _argument: object) -> None:
                 if event == "call" and not frame.f_code.co_filename.startswith("<"):
-                    files.add(_file(frame.f_code))
+                    files.add(_file(frame.f_code.co_filename))
 
             before = sys.getprofile()
             sys.setprofile(enter)
@@ -137,8 +144,9 @@ def test_all_of_our_code_that_runs_in_a_stage_is_in_its_version(make_session) ->
         assert ours <= stage_sources(stage), stage
 
 
-def _file(code: CodeType) -> str:
-    return str(Path(code.co_filename).resolve())
+@cache
+def _file(name: str) -> str:
+    return str(Path(name).resolve())
 
 
 def _module(file: str) -> str:
@@ -167,22 +175,18 @@ def test_one_thread_and_two_give_the_same_numbers_to_the_last_bit(
 ) -> None:
     """Same key, same content: the environment's threads change nothing."""
     session = make_session("s.h5", hits=3)
-    found = []
-    for threads in ("1", "2"):
-        environment = os.environ | {
-            "OMP_NUM_THREADS": threads,
-            "OPENBLAS_NUM_THREADS": threads,
-        }
-        target = tmp_path / f"{threads}.results.h5"
-        done = subprocess.run(
-            [sys.executable, "-c", PROCESS, str(session), str(target)],
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        found.append((done.stdout, _numbers(target)))
-    assert found[0] == found[1]
+    one, two = tmp_path / "1.results.h5", tmp_path / "2.results.h5"
+    with one_thread():
+        here = process_task(Task(session, one), Recipe(name="p"))
+    done = subprocess.run(
+        [sys.executable, "-c", PROCESS, str(session), str(two)],
+        env=os.environ | {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == here.key
+    assert _numbers(one) == _numbers(two)
 
 
 def _numbers(path: Path) -> dict[str, bytes]:

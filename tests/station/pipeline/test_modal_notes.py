@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import NoModeFound
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.station.commands.import_command import ImportRequest, run_import
@@ -25,8 +26,9 @@ def files(
     scale: float = 1.0,
     shift: float = 0.0,
     levels: tuple[float, ...] = (100.0, 100.0, 100.0),
+    modes: FloatArray = MODES,
 ) -> list[Path]:
-    """Write one hit a file on three modes of 1 %; `shift` of frequency by doubling."""
+    """Write one hit a file on modes of 1 %; `shift` of frequency by doubling."""
     found = []
     time = np.arange(int(seconds * RATE)) / RATE
     for number, level in enumerate(levels):
@@ -34,7 +36,7 @@ def files(
         pulse = np.where(
             (time > 0.01) & (time < 0.0105), np.sin(np.pi * (time - 0.01) / 0.0005), 0.0
         )
-        omega = 2.0 * np.pi * MODES[:, None] * (1.0 + shift * np.log2(level / 100.0))
+        omega = 2.0 * np.pi * modes[:, None] * (1.0 + shift * np.log2(level / 100.0))
         ring = np.sum(omega * np.exp(-0.01 * omega * time) * np.sin(omega * time), 0)
         size = 2 * time.size
         answer = np.fft.irfft(np.fft.rfft(pulse, size) * np.fft.rfft(ring, size))
@@ -107,7 +109,8 @@ def test_levels_that_disagree_are_reported(
 ) -> None:
     """Frequencies fall by 0.5 % for each doubling of the force."""
     levels = (100.0, 200.0, 140.0, 280.0, 110.0)
-    found = modal(files(tmp_path, shift=-0.005, levels=levels), tmp_path)
+    hits = files(tmp_path, shift=-0.005, levels=levels, modes=MODES[:1])
+    found = modal(hits, tmp_path)
     assert found["linearity"]["nonlinear"]
     assert "levels disagree" in found["notes"][0]
     assert "note: levels disagree" in capsys.readouterr().out

@@ -1,6 +1,7 @@
 """The link at which a chain disagrees, from readings of its links."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from jointbench.analysis.gap.chain.chain_records import (
 )
 from jointbench.analysis.gap.chain.joint_over_preload import BoltedStates
 from jointbench.analysis.gap.chain.locate_link import Chain, locate, with_explained
+from jointbench.analysis.gap.chain.moved_quantities import moved_stiffness
 from jointbench.analysis.gap.contact_bench.joint_states import JointFacts
 from jointbench.analysis.gap.contact_bench.preload_law import LawParameter
 from jointbench.analysis.gap.contact_bench.preload_laws import (
@@ -23,6 +25,7 @@ from jointbench.analysis.gap.contact_bench.preload_laws import (
     asperity_parameters,
 )
 from jointbench.analysis.gap.model.diagnosis_record import Finding
+from jointbench.station.gap.contact_section import joint_figure
 
 PRELOAD = np.array([2e3, 4e3, 8e3, 16e3, 32e3, 64e3])
 FACTS = JointFacts(4, 0.008, 0.2, 0.15, 0.03, 0.2, 0.0064, 2.9e10, 0.25)
@@ -188,3 +191,43 @@ def test_effects_that_explain_the_joint_restore_it_where_no_free_shape_does() ->
     assert location.places == ()
     found = with_explained(location, LinkTest(8.0, 6, passed=True, charge=10.0))
     assert [p.links for p in found.places] == [(ChainLink.CONTACT,)]
+
+
+def compliant_and_wavy() -> Chain:
+    """Return a joint with bodies in series, whose waves close below 6 kN."""
+    waves = 1e-10 * np.maximum(np.log(6e3 / PRELOAD), 0.0)
+    stiffness = 1.0 / (1.0 / RIGHT + 2e-11 + waves)
+    reading = JointReading(np.log(stiffness), np.eye(6) * 1e-6, GOOD)
+    facts = replace(FACTS, torque_scatter=0.005)
+    states = BoltedStates("made", facts, PRELOAD, np.zeros(6, dtype=np.int64))
+    return Chain(SurfaceReading(law(), GOOD), StructureReading(reading), states)
+
+
+def test_causes_that_explain_the_joint_together_are_a_place() -> None:
+    """Bodies and waves bend ln k as no free shape does: the pair restores the chain."""
+    given = compliant_and_wavy()
+    found = diagnose_chain(given)
+    assert found.contact.found.verdict is Finding.UNKNOWN
+    assert found.links == (ChainLink.CONTACT,)
+    assert found.finding is Finding.NAMED
+    assert set(found.names) == {"series_compliance@link:joint", "waviness@link:joint"}
+    free = {one.words: one.tests[1] for one in locate(given).hypotheses}["contact"]
+    assert not free.passed
+
+
+def test_what_is_drawn_of_the_joint_is_what_is_named() -> None:
+    """Figure and held-out torques are those of the causes together."""
+    given = compliant_and_wavy()
+    found = diagnose_chain(given)
+    assert found.several is not None
+    drawn = {c.effect.name for c in found.joint.best.candidates}
+    assert drawn == {cause.name for cause in found.several.causes}
+    np.testing.assert_array_equal(
+        moved_stiffness(found).after, np.exp(found.several.held.predicted)
+    )
+    traces: Any = joint_figure(found.joint, 0)["data"]
+    assert traces[-1]["name"].startswith("with series compliance")
+    assert "waviness" in traces[-1]["name"]
+    np.testing.assert_allclose(
+        traces[-1]["y"], np.exp(given.reading.log_stiffness), rtol=0.02
+    )

@@ -128,3 +128,71 @@ def test_waves_that_no_surface_showed_count_as_heights() -> None:
     before = plain.predict(np.zeros(plain.base_sd.size), ())
     after = waved.predict(np.zeros(waved.base_sd.size), ())
     np.testing.assert_allclose(before - after, 0.5 * np.log(2.0))
+
+
+def test_states_of_one_setting_share_their_preload() -> None:
+    """One coordinate for them, whose slope moves the values of all of them."""
+    data = joint(seed=1)
+    count = data.states.torque.size
+    setting = np.arange(count) // 2
+    tied = replace(data, states=replace(data.states, setting=setting))
+    bench = make_contact_bench(tied, LAW)
+    apart = make_contact_bench(data, LAW)
+    assert apart.base_sd.size - bench.base_sd.size == count - setting.max() - 1
+    x = 0.5 * bench.base_sd
+    slopes = bench.slopes(x, (), FULL)
+    for k in range(bench.layout.state, x.size):
+        step = np.zeros(x.size)
+        step[k] = 1e-6
+        change = bench.residual(x + step, (), FULL) - bench.residual(x - step, (), FULL)
+        np.testing.assert_allclose(slopes[:, k], change / 2e-6, atol=2e-3)
+
+
+@pytest.mark.parametrize("exponent", [1.0 / 3.0, 0.7, 1.0])
+def test_losses_of_cycles_are_those_of_masing_s_rule(exponent: float) -> None:
+    """Energy of cycles with the tangent k (1 - q)^m, summed over their branches."""
+    data = joint(seed=1)
+    states, rows = data.states, data.rows
+    shear = np.array([300.0, 900.0] * (states.torque.size // 2 + 1))
+    tied = replace(
+        states,
+        setting=np.arange(states.torque.size) // 2,
+        shear=shear[: states.torque.size],
+        frequency=np.full(states.torque.size, 1.0 / (2.0 * np.pi)),
+    )
+    seen = JointRows(
+        np.arange(states.torque.size),
+        np.full(states.torque.size, 5),
+        np.zeros(states.torque.size),
+        np.eye(states.torque.size),
+        np.zeros(states.torque.size, dtype=bool),
+    )
+    bench = make_contact_bench(replace(data, states=tied, rows=seen), LAW)
+    (slip,) = [c for c in bench.candidates if c.effect.name == "microslip_damping"]
+    place = bench.nominal.preload
+    joint_now = replace(
+        bench.nominal, table=np.vstack([np.ones((4, place.size)), 0 * place, 0 * place])
+    )
+    relative = shear[: place.size] / 900.0 * np.exp(bench.nominal.middle) / place
+    q = 0.9 * relative / relative.max()
+    loss = 2.0 * exponent * 0.9 / (3.0 * np.pi * relative.max())
+    entry = bench.entries[slip.label]
+    found = entry.act(np.array([loss, exponent]), joint_now)[5]
+    np.testing.assert_allclose(found, _cycled(q, exponent), rtol=1e-3)
+    assert rows.value.size
+
+
+def _cycled(share: np.ndarray, exponent: float) -> np.ndarray:
+    """Return energy of a cycle over pi k u^2, from its branches, shape (n,)."""
+    found = []
+    for q in share.tolist():
+        forces = np.linspace(0.0, q, 20001)
+        slopes = (1.0 - forces) ** -exponent
+        steps = 0.5 * (slopes[1:] + slopes[:-1]) * np.diff(forces)
+        way = np.concatenate([[0.0], np.cumsum(steps)])
+        branch = 2.0 * np.interp(0.5 * (forces + q), forces, way) - way[-1]
+        back = -2.0 * np.interp(0.5 * (q - forces), forces, way) + way[-1]
+        # Both branches are point-symmetric: the part above zero force is half of it.
+        energy = 2.0 * np.trapezoid(back - branch, forces)
+        found.append(energy / (np.pi * way[-1] ** 2))
+    return np.array(found)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from joint_campaigns import LAW, joint
 
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import (
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
     UNDETERMINED,
     diagnose_contact,
 )

@@ -3,7 +3,6 @@
 
 import gap_bench as made
 import numpy as np
-import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
@@ -29,12 +28,12 @@ def softening_campaign(seed: int) -> Campaign:
     return made.quiet_campaign(records + NOISE * rng.standard_normal(records.shape))
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_a_trend_outside_the_catalogue_is_not_credited_to_another_effect(
-    seed: int,
-) -> None:
-    """Without loosening in the catalogue nothing is named, with it loosening is."""
-    campaign = softening_campaign(seed)
+def test_a_trend_outside_the_catalogue_is_not_credited_to_another_effect() -> None:
+    """Without loosening in the catalogue nothing is named, with it loosening is.
+
+    More campaigns with an effect outside the catalogue: docs/gap-outside.md.
+    """
+    campaign = softening_campaign(1)
     assert diagnose(campaign, without=frozenset({"loosening"})).effects == ()
     found = diagnose(campaign)
     assert found.verdict is Finding.NAMED

@@ -47,3 +47,12 @@ def test_without_hum_little_is_taken() -> None:
     left = hum.left(np.arange(500.0))
     found = hum_whitening(left, np.full((40, 1), 1e-3))(rows.copy())
     assert np.allclose(found, rows, atol=1e-6)
+
+
+def test_a_trace_that_never_moves_tells_nothing_of_hum() -> None:
+    """A lost cable or a full converter beside good records, and nothing else."""
+    starts = records(3, 50.0)[:, :QUIET]
+    stuck = np.full((3, QUIET), -(2.0**31))
+    hum = mains_hum(np.concatenate([starts, stuck]), RATE)
+    assert hum.amplitude == mains_hum(starts, RATE).amplitude
+    assert np.isfinite(mains_hum(stuck, RATE).left(np.arange(9.0))).all()

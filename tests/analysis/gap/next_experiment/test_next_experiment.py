@@ -10,8 +10,8 @@ from joint_campaigns import LAW, joint
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.design.expected_gain import Forecast, expected_gain
 from jointbench.analysis.gap.contact_bench.joint_states import JointData
-from jointbench.analysis.gap.diagnosis.contact_diagnosis import diagnose_contact
-from jointbench.analysis.gap.diagnosis.contact_search import fit_effect
+from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import diagnose_contact
+from jointbench.analysis.gap.law_diagnosis.contact_search import fit_effect
 from jointbench.analysis.gap.next_experiment.contact_forecast import rank_series
 from jointbench.analysis.gap.next_experiment.contact_series import (
     joined_data,

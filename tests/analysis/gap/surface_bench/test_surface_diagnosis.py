@@ -10,11 +10,11 @@ from scipy.stats import kurtosis
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Profile, all_valid
+from jointbench.analysis.gap.law_diagnosis.surface_diagnosis import diagnose_surface
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.surface_bench.rounded_bends import (
     rounded_bend_kurtosis,
 )
-from jointbench.analysis.gap.surface_bench.surface_diagnosis import diagnose_surface
 from jointbench.signal.fractal.verdict_records import SurfaceVerdict
 
 sys.path.insert(0, str(Path(__file__).parents[4] / "benchmarks" / "gap"))

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.amplitudes import at_the_end
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
+from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawCriteria, accept_law
 from jointbench.analysis.gap.model.effect import (
-    PROBE_FAMILY,
     Candidate,
     labels_of,
     may_join,
@@ -28,6 +26,15 @@ from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.surface_bench.surface_bench import SurfaceBench
 from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 
+_LIMITS = LawCriteria(
+    null_chance=SURFACE.null_chance,
+    fit_chance=SURFACE.fit_chance,
+    null_factor=SURFACE.null_factor,
+    prior_limit=SURFACE.prior_limit,
+    amplitude_limit=SURFACE.amplitude_limit,
+    cost="the rows",
+    rows="rows",
+)
 _Judged = list[tuple[Fit, Acceptance]]
 
 
@@ -218,9 +225,7 @@ def accept_surface(
         base: fit without effects.
         left: directed tests of the fit by other effects and by probes.
     """
-    dof = max(bench.blocks.dof, 1)
-    chance = SURFACE.fit_chance if fit.candidates else SURFACE.null_chance
-    model = 0.0
+    dof, model = max(bench.blocks.dof, 1), 0.0
     if fit.candidates:
         shares = [
             SURFACE.model_error if own is None else own
@@ -228,43 +233,4 @@ def accept_surface(
         ]
         model = max(shares) * max(base.cost - dof, 0.0)
         model = min(model, SURFACE.most_error * dof)
-    limit = chi2_limit(chance, dof) + model
-    allowed = SURFACE.null_factor * left.threshold + model
-    worst = left.directions[0] if left.directions else None
-    reason = ""
-    if fit.cost > limit:
-        reason = (
-            f"chi2 of the rows is {fit.cost:.1f} with {dof} rows, the limit is "
-            f"{limit:.1f}"
-        )
-    elif worst is not None and worst.drop > allowed:
-        reason = _looks_like(worst.candidate, worst.drop)
-    elif np.abs(fit.prior_deviations).max() > SURFACE.prior_limit:
-        k = int(np.argmax(np.abs(fit.prior_deviations)))
-        reason = (
-            f"{bench.base_names[k]} is {abs(fit.prior_deviations[k]):.1f} sd from its "
-            "nominal value"
-        )
-    unexplained = bool(reason)
-    if fit.candidates and not reason:
-        distance = float(np.sqrt(max(base.cost - fit.cost, 0.0)))
-        if distance < SURFACE.amplitude_limit:
-            reason = f"the effect is only {distance:.1f} sd from zero"
-        reason = reason or at_the_end(fit, bench.policy)
-    return Acceptance(
-        passed=not reason,
-        reason=reason,
-        excess=fit.cost / dof - 1.0,
-        allowed=limit / dof - 1.0,
-        remaining=worst.drop if worst else None,
-        remaining_allowed=allowed,
-        unexplained=unexplained,
-        left=left,
-    )
-
-
-def _looks_like(candidate: Candidate, drop: float) -> str:
-    if candidate.effect.family != PROBE_FAMILY:
-        return f"a further effect would lower chi2 by {drop:.0f}"
-    shape = candidate.effect.name.replace("_", " ")
-    return f"the residual has the shape '{shape}', which would lower chi2 by {drop:.0f}"
+    return accept_law(bench, fit, base, left, _LIMITS, model=model)

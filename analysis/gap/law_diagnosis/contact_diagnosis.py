@@ -2,7 +2,7 @@
 """Diagnosis of a joint over its preload: verdict and evidence."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,20 +18,26 @@ from jointbench.analysis.gap.contact_bench.held_out_torques import (
 )
 from jointbench.analysis.gap.contact_bench.joint_states import JointData
 from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
-from jointbench.analysis.gap.diagnosis.contact_search import search_contact
-from jointbench.analysis.gap.diagnosis.diagnose import estimates_of, evidence_of
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
-from jointbench.analysis.gap.model.check_records import Closest
+from jointbench.analysis.gap.judgement.fit_summaries import (
+    deviations_from_priors,
+    labels_of_fit,
+    largest_deviation,
+    ranked_fits,
+)
+from jointbench.analysis.gap.law_diagnosis.contact_search import search_contact
+from jointbench.analysis.gap.law_diagnosis.law_explanations import (
+    closest_refused,
+    named_effects,
+    verdict_on_level,
+)
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
     Estimate,
     Finding,
     Gap,
-    NamedEffect,
-    Ranked,
 )
-from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.next_experiment.contact_forecast import rank_series
 from jointbench.analysis.gap.next_experiment.ranked_experiment import (
@@ -39,7 +45,7 @@ from jointbench.analysis.gap.next_experiment.ranked_experiment import (
     advice,
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.search.selection_round import Progress
 
 MORE_STATES = (
     "add torques at both ends of the range, rising and falling, with the preload "
@@ -126,21 +132,22 @@ def conclude_contact(outcome: SearchOutcome, bench: ContactBench) -> ContactDiag
     if accepted:
         shown = (best,) if finding is Finding.NAMED else outcome.level
     sigma = np.sqrt(np.diag(bench.data.rows.covariance))
+    charge = bench.policy.parameter_charge
+
+    def charged(fit: Fit) -> float:
+        return fit.cost + charge * (fit.x.size - fit.n_base)
+
     found = Diagnosis(
         verdict=finding,
-        effects=_effects(outcome, bench, shown),
-        candidates=_ranked(outcome, bench),
+        effects=named_effects(outcome, bench, shown, charged),
+        candidates=ranked_fits(
+            bench,
+            [base, *outcome.ranked],
+            lambda f: f.cost / max(bench.blocks.dof, 1),
+        ),
         gap_before=_gap(bench, base, before),
         gap_after=_gap(bench, best, after),
-        prior_deviations={
-            name: (float(b), float(a))
-            for name, b, a in zip(
-                bench.base_names,
-                base.prior_deviations,
-                best.prior_deviations,
-                strict=True,
-            )
-        },
+        prior_deviations=deviations_from_priors(bench.base_names, base, best),
         base=_base_estimates(bench, best),
         noise={
             "sigma_min": float(sigma.min()),
@@ -155,9 +162,9 @@ def conclude_contact(outcome: SearchOutcome, bench: ContactBench) -> ContactDiag
         ),
         experiment=advice(experiments) or verdict.step,
         reason=verdict.reason,
-        explanations=tuple(_labels(f) for f in outcome.level if accepted),
+        explanations=tuple(labels_of_fit(f) for f in outcome.level if accepted),
         policy=bench.policy,
-        closest=_closest(outcome, bench, finding),
+        closest=closest_refused(outcome, bench, finding, charged),
     )
     return ContactDiagnosis(found, before, after, bench, base, best, experiments)
 
@@ -193,15 +200,11 @@ def contact_verdict(outcome: SearchOutcome, bench: ContactBench) -> DiagnosisVer
         reason = f"the law explains the joint within priors and scatter: {chi2}"
         step = "none required; more torques and assemblies would show smaller effects"
         return DiagnosisVerdict(Finding.NONE, reason, step)
-    if len(outcome.level) == 1:
-        reason = f"explains the joint: {chi2}, {outcome.base.cost:.1f} without it"
-        return DiagnosisVerdict(Finding.NAMED, reason, "no rival is near")
-    names = " or ".join(words_of(f.candidates) for f in outcome.level)
-    if len(outcome.level) > bench.policy.most_rivals:
-        reason = f"{UNDETERMINED}: too many explanations fit equally well: {names}"
-        return DiagnosisVerdict(Finding.UNKNOWN, reason, _separate(outcome))
-    reason = f"{names}: the difference of their scores is not significant"
-    return DiagnosisVerdict(Finding.AMBIGUOUS, reason, _separate(outcome))
+    explains = f"explains the joint: {chi2}, {outcome.base.cost:.1f} without it"
+    verdict = verdict_on_level(outcome, bench, explains, MORE_STATES)
+    if verdict.finding is Finding.UNKNOWN:
+        return replace(verdict, reason=f"{UNDETERMINED}: {verdict.reason}")
+    return verdict
 
 
 def too_few(data: JointData) -> str:
@@ -227,93 +230,13 @@ def too_few(data: JointData) -> str:
     return ""
 
 
-def _separate(outcome: SearchOutcome) -> str:
-    """Return the experiment that separates the explanations that fit alike."""
-    steps = []
-    effects = [f.candidates[-1].effect for f in outcome.level]
-    for one in effects:
-        for other in effects:
-            step = one.separates.get(other.name)
-            if step is not None and step not in steps:
-                steps.append(step)
-    return "; or ".join(steps) or MORE_STATES
-
-
-def _probabilities(outcome: SearchOutcome, bench: ContactBench) -> dict[str, float]:
-    """Return the probability of each explanation among those that were fitted.
-
-    Source:
-        Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773, with the charges of the
-        score in place of the prior volumes.
-    """
-    near = min((score(bench, f) for f in outcome.ranked), default=0.0)
-    near += bench.policy.rival_score
-    # A fit near the best that is no explanation was rejected by a test of its own.
-    kept = [f for f in outcome.ranked if f in outcome.level or score(bench, f) >= near]
-    best = [outcome.best] if outcome.best.candidates else []
-    fits = list(dict.fromkeys([outcome.base, *best, *kept]))
-    charge = bench.policy.parameter_charge
-    scores = np.array([f.cost + charge * (f.x.size - f.n_base) for f in fits])
-    weight = np.exp(-0.5 * (scores - scores.min()))
-    return {
-        words_of(f.candidates): float(w)
-        for f, w in zip(fits, weight / weight.sum(), strict=True)
-    }
-
-
-def _effects(
-    outcome: SearchOutcome, bench: ContactBench, fits: Sequence[Fit]
-) -> tuple[NamedEffect, ...]:
-    chance = _probabilities(outcome, bench) if fits else {}
-    return tuple(
-        NamedEffect(
-            c.effect.name,
-            str(c.site),
-            estimates_of(bench, f, k),
-            chance[words_of(f.candidates)],
-            evidence_of(outcome, bench, f),
-        )
-        for f in fits
-        for k, c in enumerate(f.candidates)
-    )
-
-
-def _closest(
-    outcome: SearchOutcome, bench: ContactBench, finding: Finding
-) -> Closest | None:
-    best = outcome.best
-    if finding is not Finding.UNKNOWN or not best.candidates:
-        return None
-    chance = _probabilities(outcome, bench)[words_of(best.candidates)]
-    return Closest(_labels(best), chance, evidence_of(outcome, bench, best))
-
-
-def _labels(fit: Fit) -> tuple[str, ...]:
-    return tuple(c.label for c in fit.candidates) or ("none",)
-
-
 def _gap(bench: ContactBench, fit: Fit, held: HeldOutTorques) -> Gap:
     words = (
         f"{len(held.levels)} torques held out, each predicted from the others; "
         f"{100 * held.share_inside:.0f} % of the values are within their 95 % interval"
     )
-    deviation = float(np.abs(fit.prior_deviations).max())
+    deviation = largest_deviation(fit)
     return Gap(held.gap, held.chi2_per_dof, deviation, bench.views(fit), words)
-
-
-def _ranked(outcome: SearchOutcome, bench: ContactBench) -> tuple[Ranked, ...]:
-    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
-    first = score(bench, rows[0])
-    return tuple(
-        Ranked(
-            _labels(f),
-            score(bench, f),
-            score(bench, f) - first,
-            f.cost / max(bench.blocks.dof, 1),
-            float(np.abs(f.prior_deviations).max()),
-        )
-        for f in rows
-    )
 
 
 def _base_estimates(bench: ContactBench, fit: Fit) -> tuple[Estimate, ...]:

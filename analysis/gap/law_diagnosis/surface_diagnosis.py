@@ -3,22 +3,32 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.surfaces import Surface
-from jointbench.analysis.gap.diagnosis.diagnose import estimates_of, evidence_of
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
-from jointbench.analysis.gap.model.check_records import Closest
+from jointbench.analysis.gap.judgement.fit_summaries import (
+    deviations_from_priors,
+    labels_of_fit,
+    largest_deviation,
+    ranked_fits,
+)
+from jointbench.analysis.gap.law_diagnosis.law_explanations import (
+    closest_refused,
+    named_effects,
+    separating_steps,
+    verdict_on_level,
+)
+from jointbench.analysis.gap.law_diagnosis.surface_search import search_surface
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
     Estimate,
     Finding,
     Gap,
-    NamedEffect,
-    Ranked,
 )
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
@@ -33,7 +43,6 @@ from jointbench.analysis.gap.surface_bench.surface_bench import (
     make_surface_bench,
 )
 from jointbench.analysis.gap.surface_bench.surface_rows import surface_rows
-from jointbench.analysis.gap.surface_bench.surface_search import search_surface
 from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 from jointbench.analysis.gap.surface_bench.surface_summary import summary_word
 from jointbench.analysis.gap.surface_bench.surface_views import surface_views
@@ -122,24 +131,21 @@ def _conclude(
     best = outcome.best if accepted else base
     before = hold_out_waves(bench, base)
     after = before if best is base else hold_out_waves(bench, best)
+    charged = partial(score, bench)
     shown: Sequence[Fit] = ()
     if accepted:
         shown = outcome.level if finding is Finding.AMBIGUOUS else (best,)
     found = Diagnosis(
         verdict=finding,
-        effects=_effects(outcome, bench, shown),
-        candidates=_candidates(outcome, bench),
+        effects=named_effects(outcome, bench, shown, charged),
+        candidates=ranked_fits(
+            bench,
+            [base, *outcome.ranked],
+            lambda f: f.cost / max(bench.blocks.dof, 1),
+        ),
         gap_before=_gap(bench, base, before),
         gap_after=_gap(bench, best, after),
-        prior_deviations={
-            name: (float(b), float(a))
-            for name, b, a in zip(
-                bench.base_names,
-                base.prior_deviations,
-                best.prior_deviations,
-                strict=True,
-            )
-        },
+        prior_deviations=deviations_from_priors(bench.base_names, base, best),
         base=base_estimates(bench, best),
         noise={
             "sigma_min": 1.0,
@@ -154,9 +160,9 @@ def _conclude(
         ),
         experiment=verdict.step,
         reason=verdict.reason,
-        explanations=tuple(_labels(f) for f in outcome.level if accepted),
+        explanations=tuple(labels_of_fit(f) for f in outcome.level if accepted),
         policy=bench.policy,
-        closest=_closest(outcome, bench, finding),
+        closest=closest_refused(outcome, bench, finding, charged),
     )
     names = [c.effect.name for c in best.candidates]
     return SurfaceDiagnosis(
@@ -192,15 +198,8 @@ def surface_verdict(
         reason = f"a self-affine surface explains the heights: {chi2}"
         step = "none required; a longer profile would show smaller effects"
         return DiagnosisVerdict(Finding.NONE, reason, step)
-    if len(outcome.level) == 1:
-        reason = f"explains the surface: {chi2}, {outcome.base.cost:.1f} without it"
-        return DiagnosisVerdict(Finding.NAMED, reason, "no rival is near")
-    names = " or ".join(words_of(f.candidates) for f in outcome.level)
-    if len(outcome.level) > bench.policy.most_rivals:
-        reason = f"too many explanations fit equally well: {names}"
-        return DiagnosisVerdict(Finding.UNKNOWN, reason, _separate(outcome))
-    reason = f"{names}: the difference of their scores is not significant"
-    return DiagnosisVerdict(Finding.AMBIGUOUS, reason, _separate(outcome))
+    explains = f"explains the surface: {chi2}, {outcome.base.cost:.1f} without it"
+    return verdict_on_level(outcome, bench, explains, MORE_SURFACE)
 
 
 def _mostly(outcome: SearchOutcome, chi2: str, tolerance: float) -> DiagnosisVerdict:
@@ -211,70 +210,8 @@ def _mostly(outcome: SearchOutcome, chi2: str, tolerance: float) -> DiagnosisVer
         return DiagnosisVerdict(Finding.MOSTLY, reason, MORE_SURFACE)
     names = " or ".join(words_of(f.candidates) or "none" for f in outcome.level)
     reason = f"{names} fit {within}; a name needs more"
-    return DiagnosisVerdict(Finding.UNKNOWN, reason, _separate(outcome))
-
-
-def _separate(outcome: SearchOutcome) -> str:
-    """Return the fixed advice on the explanations that fit alike."""
-    steps = []
-    effects = [c.effect for f in outcome.level for c in f.candidates]
-    for one in effects:
-        for other in effects:
-            step = one.separates.get(other.name)
-            if step is not None and step not in steps:
-                steps.append(step)
-    return "; or ".join(steps) or MORE_SURFACE
-
-
-def _chances(outcome: SearchOutcome, bench: SurfaceBench) -> dict[str, float]:
-    """Return the probability of each explanation among those that were fitted.
-
-    Source:
-        Kass and Raftery 1995, J. Am. Stat. Assoc. 90, 773, with the charges of the
-        score in place of the prior volumes.
-    """
-    near = min((score(bench, f) for f in outcome.ranked), default=0.0)
-    near += bench.policy.rival_score
-    kept = [f for f in outcome.ranked if f in outcome.level or score(bench, f) >= near]
-    best = [outcome.best] if outcome.best.candidates else []
-    fits = list(dict.fromkeys([outcome.base, *best, *kept]))
-    scores = np.array([score(bench, f) for f in fits])
-    weight = np.exp(-0.5 * (scores - scores.min()))
-    return {
-        words_of(f.candidates): float(w)
-        for f, w in zip(fits, weight / weight.sum(), strict=True)
-    }
-
-
-def _effects(
-    outcome: SearchOutcome, bench: SurfaceBench, fits: Sequence[Fit]
-) -> tuple[NamedEffect, ...]:
-    chance = _chances(outcome, bench) if fits else {}
-    return tuple(
-        NamedEffect(
-            c.effect.name,
-            str(c.site),
-            estimates_of(bench, f, k),
-            chance[words_of(f.candidates)],
-            evidence_of(outcome, bench, f),
-        )
-        for f in fits
-        for k, c in enumerate(f.candidates)
-    )
-
-
-def _closest(
-    outcome: SearchOutcome, bench: SurfaceBench, finding: Finding
-) -> Closest | None:
-    best = outcome.best
-    if finding is not Finding.UNKNOWN or not best.candidates:
-        return None
-    chance = _chances(outcome, bench)[words_of(best.candidates)]
-    return Closest(_labels(best), chance, evidence_of(outcome, bench, best))
-
-
-def _labels(fit: Fit) -> tuple[str, ...]:
-    return tuple(c.label for c in fit.candidates) or ("none",)
+    steps = separating_steps(outcome, MORE_SURFACE)
+    return DiagnosisVerdict(Finding.UNKNOWN, reason, steps)
 
 
 def _gap(bench: SurfaceBench, fit: Fit, held: HeldOutWaves) -> Gap:
@@ -283,24 +220,9 @@ def _gap(bench: SurfaceBench, fit: Fit, held: HeldOutWaves) -> Gap:
         f"predicted from the others, {100 * held.share_inside:.0f} % within their "
         "95 % interval; marks and shapes as fitted"
     )
-    deviation = float(np.abs(fit.prior_deviations).max())
+    deviation = largest_deviation(fit)
     views = surface_views(bench.rows, fit.residual)
     return Gap(held.gap, held.chi2_per_dof, deviation, views, words)
-
-
-def _candidates(outcome: SearchOutcome, bench: SurfaceBench) -> tuple[Ranked, ...]:
-    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
-    first = score(bench, rows[0])
-    return tuple(
-        Ranked(
-            _labels(f),
-            score(bench, f),
-            score(bench, f) - first,
-            f.cost / max(bench.blocks.dof, 1),
-            float(np.abs(f.prior_deviations).max()),
-        )
-        for f in rows
-    )
 
 
 def base_estimates(bench: SurfaceBench, fit: Fit) -> tuple[Estimate, ...]:

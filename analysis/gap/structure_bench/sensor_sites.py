@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sites at the channels of a measurement and at the marks that the hammer aims at."""
+"""Sites at the sensors and hammer points of a structure."""
 
 from jointbench.analysis.gap.model.effect import Site
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign

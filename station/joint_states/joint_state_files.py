@@ -22,9 +22,21 @@ from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
 from jointbench.analysis.gap.next_experiment.contact_series import joined_data
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
-from jointbench.station.gap.identified_values import identified_value
-from jointbench.station.gap.joint_state_tables import read_covariance, read_state_table
-from jointbench.station.gap.preload_law_tables import contact_law, modulus_of
+from jointbench.station.joint_states.identified_values import (
+    IdentifiedParameters,
+    read_identified,
+)
+from jointbench.station.joint_states.joint_state_tables import (
+    read_covariance,
+    read_state_table,
+)
+from jointbench.station.joint_states.loop_states import (
+    SetState,
+    StateLoop,
+    set_states,
+    state_loops,
+)
+from jointbench.station.joint_states.preload_law_tables import contact_law, modulus_of
 from jointbench.station.schemas.joint_states_model import (
     BodiesTable,
     BoltedJointTable,
@@ -34,6 +46,8 @@ from jointbench.station.schemas.joint_states_model import (
 
 _MOST_STATES = 200
 """States of one joint: the covariance of all values is held and factored at once."""
+_LEAST_SD = 1e-6
+"""Smallest sd of a logarithm: a covariance must not be singular."""
 CONE_ANGLE = math.radians(30.0)
 """Half angle of the pressure cone of a bolt: 25 to 35 degrees in VDI 2230."""
 
@@ -48,6 +62,9 @@ class MeasuredValue:
         value: [SI].
         sd: of the logarithm [-].
         bound: whether it is only known to be larger.
+        setting: index of the state in the file.
+        common_sd: sd of the logarithm that it shares with the values of its loop [-].
+        origin: identification and name of the parameter that it is, or None.
     """
 
     state: int
@@ -55,6 +72,9 @@ class MeasuredValue:
     value: float
     sd: float
     bound: bool
+    setting: int
+    common_sd: float = 0.0
+    origin: tuple[IdentifiedParameters, str] | None = None
 
 
 def names_states(path: Path) -> bool:
@@ -76,9 +96,7 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
         BadData: the TOML file or one that it names breaks a rule.
     """
     model = read_toml(path, JointStatesModel)
-    states = model.states
-    if model.table is not None:
-        states = read_state_table(path.parent / model.table)
+    states = set_states(_tables(model, path.parent), path.parent)
     if len(states) > _MOST_STATES:
         raise BadData(
             f"{named(path)} names {len(states)} states, at most {_MOST_STATES} are "
@@ -97,6 +115,28 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
     return data, contact_law(model.law, model.bodies, facts)
 
 
+def _tables(model: JointStatesModel, folder: Path) -> tuple[JointStateTable, ...]:
+    if model.table is None:
+        return model.states
+    return read_state_table(folder / model.table)
+
+
+def loops_of(paths: Sequence[Path]) -> list[StateLoop]:
+    """Return the loops of a joint, in the order of files and states.
+
+    Args:
+        paths: of TOML files.
+
+    Raises:
+        BadData: a file breaks a rule.
+    """
+    found: list[StateLoop] = []
+    for path in paths:
+        model = read_toml(path, JointStatesModel)
+        found += state_loops(_tables(model, path.parent), path.parent)
+    return found
+
+
 def read_joints(paths: Sequence[Path]) -> tuple[JointData, PreloadLaw]:
     """Read the sessions of one joint as one; facts and law are those of the first.
 
@@ -113,64 +153,60 @@ def read_joints(paths: Sequence[Path]) -> tuple[JointData, PreloadLaw]:
     return data, law
 
 
-def _states(states: tuple[JointStateTable, ...]) -> JointStates:
+def _states(states: tuple[SetState, ...]) -> JointStates:
+    tables = [one.table for one in states]
+
     def column(name: str) -> FloatArray:
-        values = [getattr(s, name) for s in states]
+        values = [getattr(s, name) for s in tables]
         return np.array([np.nan if v is None else float(v) for v in values])
 
-    assembly = np.unique([s.assembly for s in states], return_inverse=True)[1]
+    assembly = np.unique([s.assembly for s in tables], return_inverse=True)[1]
     return JointStates(
         torque=column("torque"),
         preload=column("preload"),
         preload_sd=column("preload_sd"),
         assembly=assembly.astype(np.int64),
-        falling=np.array([s.branch == "falling" for s in states]),
+        falling=np.array([s.branch == "falling" for s in tables]),
         time=column("time"),
         shear=column("shear"),
         frequency=column("frequency"),
+        setting=np.array([one.setting for one in states]),
     )
 
 
-def _values(states: tuple[JointStateTable, ...], folder: Path) -> list[MeasuredValue]:
+def _values(states: tuple[SetState, ...], folder: Path) -> list[MeasuredValue]:
     """Return all values in the order of states and keys."""
+    files: dict[str, IdentifiedParameters] = {}
     found = []
-    for k, state in enumerate(states):
+    for k, one in enumerate(states):
+        state = one.table
         for quantity in QUANTITIES:
             key = quantity.value
-            given = getattr(state, key)
-            sd = getattr(state, f"{key}_sd")
+            given, sd, origin = getattr(state, key), getattr(state, f"{key}_sd"), None
             if given is None and key in state.parameters and state.identified:
-                parameter = state.parameters[key]
-                given_sd = identified_value(folder / state.identified, parameter)
-                if given_sd is None:
+                name = state.identified
+                if name not in files:
+                    files[name] = read_identified(folder / name)
+                origin = files[name], state.parameters[key]
+                value = origin[0].value(origin[1])
+                if value is None:
                     continue
-                given, sd = (given_sd.value, given_sd.bound), given_sd.sd
+                given, sd = (value.value, value.bound), value.sd
             if given is not None:
-                found.append(MeasuredValue(k, key, given[0], sd, given[1]))
+                own = (given[0], sd, given[1], one.setting, one.common_sd, origin)
+                found.append(MeasuredValue(k, key, *own))
     return found
 
 
 def _rows(
     values: list[MeasuredValue],
-    states: tuple[JointStateTable, ...],
+    states: tuple[SetState, ...],
     covariance: FloatArray | None,
 ) -> JointRows:
     keys = [q.value for q in QUANTITIES]
     if covariance is None:
-        covariance = np.diag([max(v.sd, 1e-6) ** 2 for v in values])
-        place = {(v.state, v.quantity): i for i, v in enumerate(values)}
-        for k, state in enumerate(states):
-            for pair, value in state.correlation.items():
-                one, _, other = pair.partition("_")
-                if one == other or not {(k, one), (k, other)} <= place.keys():
-                    raise BadData(
-                        f"state {k + 1}: correlation {pair!r} names values that it "
-                        "does not have, or one twice; write e.g. correlation = "
-                        "{ kn_kt = 0.4 }"
-                    )
-                i, j = place[k, one], place[k, other]
-                root = math.sqrt(covariance[i, i] * covariance[j, j])
-                covariance[i, j] = covariance[j, i] = value * root
+        covariance = _own_covariance(values)
+        _correlate(covariance, values, states)
     return JointRows(
         state=np.array([v.state for v in values]),
         quantity=np.array([keys.index(v.quantity) for v in values]),
@@ -178,6 +214,42 @@ def _rows(
         covariance=covariance,
         bound=np.array([v.bound for v in values]),
     )
+
+
+def _own_covariance(values: list[MeasuredValue]) -> FloatArray:
+    """Return the covariance of loops and of values of one identification."""
+    sd = np.array([max(v.sd, _LEAST_SD) for v in values])
+    found = np.diag(sd**2)
+    for i, one in enumerate(values):
+        for j, other in enumerate(values[:i]):
+            if one.setting == other.setting:
+                shared = one.common_sd * other.common_sd
+                found[i, j] = found[j, i] = shared
+            if one.origin is None or other.origin is None or one.bound or other.bound:
+                continue
+            if one.origin[0] is other.origin[0]:
+                factor = one.origin[0].correlation(one.origin[1], other.origin[1])
+                found[i, j] = found[j, i] = factor * sd[i] * sd[j]
+    return found
+
+
+def _correlate(
+    covariance: FloatArray, values: list[MeasuredValue], states: tuple[SetState, ...]
+) -> None:
+    """Write the correlations that the file states into a covariance."""
+    place = {(v.state, v.quantity): i for i, v in enumerate(values)}
+    for k, state in enumerate(states):
+        for pair, value in state.table.correlation.items():
+            one, _, other = pair.partition("_")
+            if one == other or not {(k, one), (k, other)} <= place.keys():
+                raise BadData(
+                    f"state {state.setting + 1}: correlation {pair!r} names values "
+                    "that it does not have, or one twice; write e.g. correlation = "
+                    "{ kn_kt = 0.4 }"
+                )
+            i, j = place[k, one], place[k, other]
+            root = math.sqrt(covariance[i, i] * covariance[j, j])
+            covariance[i, j] = covariance[j, i] = value * root
 
 
 def _covariance(

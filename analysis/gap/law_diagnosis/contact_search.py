@@ -11,14 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.amplitudes import at_the_end
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
-from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Candidate
+from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawCriteria, accept_law
+from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -26,6 +25,16 @@ from jointbench.analysis.gap.search.candidate_starts import along
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
+
+_LIMITS = LawCriteria(
+    null_chance=CONTACT.null_chance,
+    fit_chance=CONTACT.fit_chance,
+    null_factor=CONTACT.null_factor,
+    prior_limit=CONTACT.prior_limit,
+    amplitude_limit=CONTACT.amplitude_limit,
+    cost="values and priors",
+    rows="values",
+)
 
 
 def search_contact(bench: ContactBench, progress: Progress) -> SearchOutcome:
@@ -171,53 +180,9 @@ def accept_contact(
         base: fit without effects.
         left: directed tests of the fit by other effects and by probes.
     """
-    dof = max(bench.blocks.dof, 1)
-    chance = CONTACT.fit_chance if fit.candidates else CONTACT.null_chance
     model = 0.0
     if fit.candidates:
         own = fit.candidates[-1].effect.model_error
         share = CONTACT.model_error if own is None else own
-        model = share * max(base.cost - dof, 0.0)
-    limit = chi2_limit(chance, dof) + model
-    allowed = CONTACT.null_factor * left.threshold + model
-    worst = left.directions[0] if left.directions else None
-    reason = ""
-    if fit.cost > limit:
-        reason = (
-            f"chi2 of values and priors is {fit.cost:.1f} with {dof} values, the limit "
-            f"is {limit:.1f}"
-        )
-    elif worst is not None and worst.drop > allowed:
-        reason = _looks_like(worst.candidate, worst.drop)
-    elif np.abs(fit.prior_deviations).max() > CONTACT.prior_limit:
-        k = int(np.argmax(np.abs(fit.prior_deviations)))
-        reason = (
-            f"{bench.base_names[k]} is {abs(fit.prior_deviations[k]):.1f} sd from its "
-            "nominal value"
-        )
-    unexplained = bool(reason)
-    if fit.candidates and not reason:
-        distance = float(np.sqrt(max(base.cost - fit.cost, 0.0)))
-        if distance < CONTACT.amplitude_limit:
-            reason = f"the effect is only {distance:.1f} sd from zero"
-        reason = reason or at_the_end(fit, bench.policy)
-    return Acceptance(
-        passed=not reason,
-        reason=reason,
-        excess=fit.cost / dof - 1.0,
-        allowed=limit / dof - 1.0,
-        remaining=worst.drop if worst else None,
-        remaining_allowed=allowed,
-        unexplained=unexplained,
-        left=left,
-    )
-
-
-def _looks_like(candidate: Candidate, drop: float) -> str:
-    if candidate.effect.family != PROBE_FAMILY:
-        return f"a further effect would lower chi2 by {drop:.0f}"
-    shape = candidate.effect.name.replace("_", " ")
-    return (
-        f"the residual of {candidate.site.name} has the shape '{shape}', which would "
-        f"lower chi2 by {drop:.0f}"
-    )
+        model = share * max(base.cost - max(bench.blocks.dof, 1), 0.0)
+    return accept_law(bench, fit, base, left, _LIMITS, model=model)

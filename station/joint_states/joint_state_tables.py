@@ -34,7 +34,7 @@ def read_state_table(path: Path) -> tuple[JointStateTable, ...]:
     Raises:
         BadData: a column or cell cannot be used.
     """
-    lines = _cells(path)
+    lines = csv_cells(path)
     header = [cell.strip() for cell in lines[0]] if lines else []
     keys = [cell.partition(":")[0].strip() for cell in header]
     units = [cell.partition(":")[2].strip() for cell in header]
@@ -80,7 +80,7 @@ def read_covariance(path: Path, n_values: int) -> FloatArray:
         BadData: the file is no symmetric matrix of this size.
     """
     try:
-        matrix = np.array([[float(cell) for cell in line] for line in _cells(path)])
+        matrix = np.array([[float(cell) for cell in line] for line in csv_cells(path)])
     except ValueError as error:
         raise BadData(
             f"{named(path)} is no table of numbers; write one row of the covariance "
@@ -100,8 +100,15 @@ def read_covariance(path: Path, n_values: int) -> FloatArray:
     return matrix
 
 
-def _cells(path: Path) -> list[list[str]]:
-    """Return the cells of all lines that are neither empty nor comments."""
+def csv_cells(path: Path) -> list[list[str]]:
+    """Return the cells of all lines that are neither empty nor comments.
+
+    Args:
+        path: of a CSV file.
+
+    Raises:
+        BadData: the file is no table.
+    """
     text, _ = decode(read_bytes(path), path)
     kept = [
         line
