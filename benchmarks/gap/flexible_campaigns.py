@@ -19,10 +19,14 @@ from pathlib import Path
 
 import numpy as np
 
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.flexible.draw_flexible_bench import draw_bench
 from jointbench.simulators.flexible.draw_specimen import SPECIMEN_KINDS
 from jointbench.simulators.flexible.flexible_bench import FlexibleBench
-from jointbench.simulators.flexible.flexible_campaign import make_flexible_campaign
+from jointbench.simulators.flexible.flexible_campaign import (
+    FlexibleCampaign,
+    make_flexible_campaign,
+)
 from jointbench.simulators.flexible.flexible_effects import (
     FLEXIBLE_EFFECTS,
     FLEXIBLE_OUTSIDE,
@@ -75,6 +79,25 @@ def nameable_bench(
     return bench, {name: asdict(found) for name, found in margins.items()}
 
 
+def _simulated(
+    seed: int, names: Sequence[str], specimen: str, world: str
+) -> tuple[FlexibleBench, dict[str, object], FlexibleCampaign]:
+    """Return a bench with its margins and hits; one that diverges is drawn again."""
+    for draw in range(_DRAWS):
+        bench, margins = nameable_bench(
+            seed + draw * _DRAWS * _NEXT,
+            names,
+            specimen=specimen,
+            world=world,
+            least=NAMEABLE,
+        )
+        try:
+            return bench, margins, make_flexible_campaign(bench)
+        except UsageError as error:
+            print(error, flush=True)
+    raise UsageError(f"no draw of seed {seed} stays finite; use another one")
+
+
 def make_one(folder: Path, seed: int, names: Sequence[str], world: str) -> Path:
     """Write one campaign, unless it is there.
 
@@ -91,10 +114,7 @@ def make_one(folder: Path, seed: int, names: Sequence[str], world: str) -> Path:
     if (place / "truth.json").exists():
         return place
     began = time.process_time()
-    bench, margins = nameable_bench(
-        seed, names, specimen=specimen, world=world, least=NAMEABLE
-    )
-    campaign = make_flexible_campaign(bench)
+    bench, margins, campaign = _simulated(seed, names, specimen, world)
     place.mkdir(parents=True, exist_ok=True)
     write_hits(campaign, place / "hits.h5")
     cost = {"cpu_s": round(time.process_time() - began, 2)}

@@ -4,7 +4,7 @@
 Usage: python benchmarks/gap/flexible_rows.py FOLDER [--minutes 60] [--rows ROW ...]
 
 Each campaign is made, examined by the command and appended to FOLDER/runs.jsonl; a
-later call goes on where the last one ended. `flexible_page.py` writes the page.
+later call continues where the last one ended. `flexible_page.py` writes the page.
 """
 
 import argparse

@@ -14,9 +14,9 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BoltedSpecimen,
     ElasticBody,
     Vector,
-    along_face,
 )
 from jointbench.simulators.flexible.sensor_chain import FULL_SCALE, sensitivities
+from jointbench.simulators.flexible.surface_nodes import along_side
 
 
 def sensor_rows(
@@ -46,7 +46,7 @@ def _moved(
     position = sensor.position
     plane = surface_axes(sensor)
     if effect.name == "wrong_position":
-        return along_face(body, sensor, p["u"], p["v"]), direction
+        return along_side(body, sensor, p["u"], p["v"]), direction
     if effect.name == "wrong_direction":
         return position, np.cos(p["angle"]) * normal + np.sin(p["angle"]) * plane[0]
     if effect.name == "cross_axis":

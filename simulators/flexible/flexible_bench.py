@@ -15,7 +15,7 @@ from jointbench.simulators.flexible.closed_structure import (
 from jointbench.simulators.flexible.flexible_effects import (
     FlexibleEffect,
 )
-from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen, along_face
+from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen
 from jointbench.simulators.flexible.friction_and_stops import LawBank, law_bank
 from jointbench.simulators.flexible.gauss_integration import HitSet
 from jointbench.simulators.flexible.hidden_in_joint import (
@@ -34,6 +34,7 @@ from jointbench.simulators.flexible.physical_bodies import PhysicalBody
 from jointbench.simulators.flexible.sensor_chain import (
     InputNoise,
 )
+from jointbench.simulators.flexible.surface_nodes import along_side
 
 COMPLIANCES = {
     "joint_compliance_tangential": slice(0, 2),
@@ -133,7 +134,7 @@ def _load(bench: FlexibleBench, hit: HitRecord) -> FloatArray:
     for effect in bench.effects:
         if effect.name == "wrong_hit_point" and effect.where["point"] == aimed.name:
             p, body = effect.parameters, bench.specimen.bodies[aimed.body]
-            place = along_face(body, aimed, p["u"], p["v"])
+            place = along_side(body, aimed, p["u"], p["v"])
     x, y, z = np.asarray(place) + np.asarray(hit.offset)
     rows = bench.coordinates.rows(aimed.body, (float(x), float(y), float(z)))
     return np.asarray(np.asarray(hit.direction) @ rows)

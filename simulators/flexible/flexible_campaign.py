@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.flexible.faulty_sensors import faulty_signals, sensor_rows
 from jointbench.simulators.flexible.flexible_bench import (
     FlexibleBench,
@@ -70,9 +71,19 @@ def _groups(bench: FlexibleBench) -> list[list[int]]:
 
 
 def make_flexible_campaign(bench: FlexibleBench) -> FlexibleCampaign:
-    """Simulate all hits of a bench, as its converter delivers them."""
+    """Simulate all hits of a bench, as its converter delivers them.
+
+    Raises:
+        UsageError: a softening spring of the bench turns over under its hits.
+    """
     rng = np.random.default_rng([bench.seed, 28])
     physical = simulate_hits(bench)
+    if not np.all(np.isfinite(physical)):
+        names = ", ".join(effect.name for effect in bench.effects)
+        raise UsageError(
+            f"the bench of seed {bench.seed} ({names}) diverges under its hits; "
+            "use another seed"
+        )
     counts = [
         digitised(record, bench.noise, hit.time, rng)
         for record, hit in zip(physical, bench.hits, strict=True)

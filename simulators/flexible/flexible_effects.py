@@ -9,8 +9,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen, along_face
+from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen
 from jointbench.simulators.flexible.joint_values import BoltValues
+from jointbench.simulators.flexible.surface_nodes import along_side
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,7 +284,7 @@ def _cable(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
 def _shifted(
     low: float, high: float, place: Callable[..., dict[str, int | str]]
 ) -> Draw:
-    """Return an offset along the face of a body that does not leave it [m]."""
+    """Return an offset along the side of a body that does not leave it [m]."""
 
     def draw(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
         where = place(s, rng)
@@ -293,7 +294,7 @@ def _shifted(
         while True:
             size, turn = _log(rng, low, high), rng.uniform(0, 2 * np.pi)
             u, v = size * float(np.cos(turn)), size * float(np.sin(turn))
-            if body.holds(along_face(body, spot, u, v)):
+            if body.holds(along_side(body, spot, u, v)):
                 return _effect(where, u=u, v=v)
 
     return draw

@@ -81,22 +81,6 @@ class BodyPlace:
     direction: Vector
 
 
-def face_axes(body: ElasticBody, place: BodyPlace) -> tuple[int, int]:
-    """Return the indices of the two axes along the face of a body at a place."""
-    inside = body.within(place.position)
-    to_face = np.minimum(np.abs(inside), np.abs(inside - np.array(body.block.size)))
-    first, second = sorted(int(k) for k in np.argsort(to_face)[1:])
-    return first, second
-
-
-def along_face(body: ElasticBody, place: BodyPlace, u: float, v: float) -> Vector:
-    """Return a place moved by u and v [m] along the face of its body."""
-    moved = list(place.position)
-    for axis, offset in zip(face_axes(body, place), (u, v), strict=True):
-        moved[axis] += offset
-    return moved[0], moved[1], moved[2]
-
-
 @dataclass(frozen=True, slots=True)
 class BoltedSpecimen:
     """Two bodies on bolts.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Nodes of the surface of a body around its sensors and hammer points."""
+"""Places on the sides of a body: moved along them, and nodes around them."""
 
 import numpy as np
 
@@ -8,12 +8,28 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BodyPlace,
     BoltedSpecimen,
     ElasticBody,
-    face_axes,
+    Vector,
 )
 
 _SPACING = 0.007  # [m]
 _FEWEST = 7  # nodes along an edge
 _NEAR = 0.07  # of a sensor or point [m]
+
+
+def side_axes(body: ElasticBody, place: BodyPlace) -> tuple[int, int]:
+    """Return the indices of the two axes along the side of a body at a place."""
+    inside = body.within(place.position)
+    to_side = np.minimum(np.abs(inside), np.abs(inside - np.array(body.block.size)))
+    first, second = sorted(int(k) for k in np.argsort(to_side)[1:])
+    return first, second
+
+
+def along_side(body: ElasticBody, place: BodyPlace, u: float, v: float) -> Vector:
+    """Return a place moved by u and v [m] along the side of its body."""
+    moved = list(place.position)
+    for axis, offset in zip(side_axes(body, place), (u, v), strict=True):
+        moved[axis] += offset
+    return moved[0], moved[1], moved[2]
 
 
 def surface_nodes(specimen: BoltedSpecimen, index: int) -> FloatArray:
@@ -30,8 +46,8 @@ def surface_nodes(specimen: BoltedSpecimen, index: int) -> FloatArray:
 
 
 def _around(body: ElasticBody, place: BodyPlace) -> FloatArray:
-    """Return the nodes of the grid of a face that are near a place."""
-    axes = face_axes(body, place)
+    """Return the nodes of the grid of a side that are near a place."""
+    axes = side_axes(body, place)
     lines = [
         body.corner[k]
         + np.linspace(

@@ -125,6 +125,12 @@ class HitSettings:
     mains: tuple[float, float] = numerical(
         (50.0, 60.0), "Hz", "nominal frequencies of the mains"
     )
+    mains_harmonics: tuple[int, int] = numerical(
+        (1, 3),
+        "-",
+        "harmonics of the mains in the hum that is fitted",
+        "transformers and rectifiers make odd ones; the fifth is weaker",
+    )
     mains_sd: float = numerical(
         0.1,
         "Hz",

@@ -14,12 +14,10 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.intake.intake_settings import HITS
 
-_HARMONICS = (1, 3)
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MainsHum:
-    """What quiet starts tell of offset and hum, over the white noise of a channel.
+    """What quiet starts show of offset and hum, over the white noise of a channel.
 
     Attributes:
         frequency: nominal one of the mains [Hz].
@@ -70,7 +68,7 @@ class MainsHum:
 
 
 def mains_hum(starts: FloatArray, sample_rate: float) -> MainsHum:
-    """Return what the quiet starts of all hits tell of offset and hum.
+    """Return what the quiet starts of all hits show of offset and hum.
 
     Args:
         starts: samples before the hits, shape (n_traces, n_samples).
@@ -97,7 +95,7 @@ def mains_hum(starts: FloatArray, sample_rate: float) -> MainsHum:
 def _basis(frequency: float, times: FloatArray) -> FloatArray:
     """Return offset, cosine and sine of each harmonic, shape (n_terms, n)."""
     rows = [np.ones(times.size)]
-    for harmonic in _HARMONICS:
+    for harmonic in HITS.mains_harmonics:
         angle = 2 * np.pi * harmonic * frequency * times
         rows += [np.cos(angle), np.sin(angle)]
     return np.stack(rows)

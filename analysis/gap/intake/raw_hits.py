@@ -29,7 +29,7 @@ def quieted(values: FloatArray, hum: MainsHum) -> QuietHit:
 
     Args:
         values: shape (n_rows, n_samples).
-        hum: what the quiet starts of all hits tell of it.
+        hum: what the quiet starts of all hits show of it.
     """
     left = hum.subtracted(values)
     dof = max(hum.quiet - len(hum.root), 1)

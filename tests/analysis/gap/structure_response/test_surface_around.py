@@ -8,13 +8,13 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_response.jointed_bodies import HitPoint
 from jointbench.analysis.gap.structure_response.surface_around import surface_around
 from jointbench.simulators.flexible.draw_flexible_bench import draw_bench
-from jointbench.simulators.flexible.flexible_specimen import (
-    BodyPlace,
-    along_face,
-    face_axes,
-)
+from jointbench.simulators.flexible.flexible_specimen import BodyPlace
 from jointbench.simulators.flexible.physical_bodies import PhysicalBody
-from jointbench.simulators.flexible.surface_nodes import surface_nodes
+from jointbench.simulators.flexible.surface_nodes import (
+    along_side,
+    side_axes,
+    surface_nodes,
+)
 
 OFFSETS = ((0.045, 0.0), (-0.03, 0.01), (0.012, -0.008))
 
@@ -37,10 +37,10 @@ def test_shapes_beside_a_place_are_those_of_the_body(kind: str) -> None:
     for body, place, nodes in places(kind):
         found = surface_around(place.position, nodes, body.table_nodes(nodes))
         assert found is not None
-        assert found.axes == face_axes(body.body, place)
+        assert found.axes == side_axes(body.body, place)
         here = body.table_rows(place.position)
         for u, v in OFFSETS:
-            moved = along_face(body.body, place, u, v)
+            moved = along_side(body.body, place, u, v)
             if body.body.holds(moved):
                 tried += 1
                 wanted = body.table_rows(moved) - here
@@ -65,7 +65,7 @@ def test_a_moved_point_has_the_derivatives_there() -> None:
         return HitPoint(place.name, normal, across, body.table_rows(at), gradient)
 
     moved = point(place.position).beside(around, 0.02, -0.015)
-    wanted = point(along_face(body.body, place, 0.02, -0.015))
+    wanted = point(along_side(body.body, place, 0.02, -0.015))
     assert_allclose(moved.rows, wanted.rows, atol=1e-3 * np.abs(wanted.rows).max())
     slack = 5e-3 * np.abs(wanted.gradient).max()
     assert_allclose(moved.gradient, wanted.gradient, atol=slack)
