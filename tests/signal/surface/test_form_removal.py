@@ -80,8 +80,8 @@ def test_the_scatter_along_a_diagonal_is_what_is_stated():
 
     The sum of their squares is below 32.9 in 99.9 % (chi-squared, 12 degrees of
     freedom); with the lines taken as independent profiles it is 99, one map left out.
-    The first map seems noisy by chance, so that D is hardly determined: of 1,000 clean
-    maps ten do, and at most one may go without D here.
+    The first map seems noisy by chance (a test of level 1 %), so that D is hardly
+    determined there; at most one map may go without D.
     """
     fits = [
         fit_fractal(structure_along(one, np.pi / 4))

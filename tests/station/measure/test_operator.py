@@ -363,10 +363,9 @@ def test_a_second_view_in_the_middle_of_a_session_draws_the_same_screen(
             if len(self.state.hits) == 3 and not drawn:
                 shutil.copy(path, copy)
                 # The recorder may have written the next event already.
-                seen = self.state.last
                 logged = from_log(read_log(copy)[0])
-                told = [stamped for stamped in logged if stamped.id <= seen]
-                late = state_after(SessionState(), told)
+                seen = [one for one in logged if one.id <= self.state.last]
+                late = state_after(SessionState(), seen)
                 drawn.append((self.state, late))
 
     terminal = Console(file=io.StringIO(), force_terminal=True, width=80, height=24)

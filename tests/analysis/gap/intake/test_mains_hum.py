@@ -49,7 +49,7 @@ def test_without_hum_little_is_taken() -> None:
     assert np.allclose(found, rows, atol=1e-6)
 
 
-def test_a_trace_that_never_moves_tells_nothing_of_hum() -> None:
+def test_a_trace_that_never_moves_shows_no_hum() -> None:
     """A lost cable or a full converter beside good records, and nothing else."""
     starts = records(3, 50.0)[:, :QUIET]
     stuck = np.full((3, QUIET), -(2.0**31))
