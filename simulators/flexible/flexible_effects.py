@@ -314,7 +314,7 @@ _CATALOGUE: Mapping[str, Draw] = MappingProxyType(
         "macroslip": _macro_slip,
         "clearance": _clearance,
         "cubic": _hardening,
-        "quadratic": _power(2, 0.1, 0.5),
+        "quadratic": _power(2, 0.05, 0.2),
         "preload_stiffness": _factor(0.25, 0.7, "n"),
         "preload_damping": lambda s, rng: _effect(
             {"bolt": "all"}, n=_sign(rng) * _log(rng, 0.5, 1.2)
