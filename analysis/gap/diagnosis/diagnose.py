@@ -32,6 +32,7 @@ from jointbench.analysis.gap.judgement.fit_summaries import (
     ranked_fits,
 )
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
+from jointbench.analysis.gap.judgement.stated_covariance import stated_covariance
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.check_records import Closest, EffectLimit
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
@@ -285,8 +286,8 @@ def estimates_of(bench: Bench, fit: Fit, index: int) -> tuple[Estimate, ...]:
     term = fit.terms[index]
     at = fit.n_base + sum(len(t.coordinates) for t in fit.terms[:index])
     size = len(term.coordinates)
-    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
-    covariance = fit.covariance[at : at + size, at : at + size] * widened
+    stated = stated_covariance(fit, bench.blocks)
+    covariance = stated[at : at + size, at : at + size]
     reported = _report(bench, term.candidate, term.coordinates)
     slopes = np.empty((len(reported), size))
     for i in range(size):
@@ -312,8 +313,7 @@ def _report(
 
 
 def _base_estimates(bench: LumpedBench, fit: Fit) -> tuple[Estimate, ...]:
-    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
-    sd = np.sqrt(np.diag(fit.covariance)[: fit.n_base] * widened)
+    sd = np.sqrt(np.diag(stated_covariance(fit, bench.blocks))[: fit.n_base])
     values = bench.theta(fit.base)
     links = len(bench.campaign.model.links)
     units = ["kg"] * len(bench.campaign.model.bodies) + ["N/m"] * links

@@ -5,6 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
+from jointbench.analysis.gap.judgement.stated_covariance import stated_covariance
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.model.law_curves import LawCurves
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
@@ -42,8 +43,7 @@ def law_curves(bench: LumpedBench, fit: Fit) -> tuple[LawCurves, ...]:
 def fit_draws(bench: LumpedBench, fit: Fit) -> list[FloatArray]:
     """Return coordinates drawn from the covariance of the fit, within their bounds."""
     problem = make_problem(bench, fit.candidates)
-    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
-    values, vectors = np.linalg.eigh(fit.covariance * widened)
+    values, vectors = np.linalg.eigh(stated_covariance(fit, bench.blocks))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     rng = np.random.default_rng(0)
     normal = rng.standard_normal((DIAGNOSIS.curve_draws, values.size))

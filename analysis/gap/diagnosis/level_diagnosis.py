@@ -22,6 +22,7 @@ from jointbench.analysis.gap.judgement.fit_summaries import (
     ranked_fits,
 )
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
+from jointbench.analysis.gap.judgement.stated_covariance import stated_covariance
 from jointbench.analysis.gap.modal_bench.base_from_records import (
     BaseRequest,
     base_from_records,
@@ -164,8 +165,8 @@ def _gap(bench: ModalBench, fit: Fit, held: HeldOut) -> Gap:
 
 
 def _base_estimates(bench: ModalBench, fit: Fit) -> tuple[Estimate, ...]:
-    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
-    sd = np.sqrt(np.maximum(np.diag(fit.covariance)[: fit.n_base] * widened, 0.0))
+    variance = np.diag(stated_covariance(fit, bench.blocks))[: fit.n_base]
+    sd = np.sqrt(np.maximum(variance, 0.0))
     values = bench.base.values(fit.base)
     sds = bench.base.value_sd(fit.base, sd)
     return tuple(

@@ -18,6 +18,7 @@ from jointbench.analysis.gap.judgement.fit_summaries import (
     ranked_fits,
 )
 from jointbench.analysis.gap.judgement.held_out import hold_out_by_steps
+from jointbench.analysis.gap.judgement.stated_covariance import stated_covariance
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
     Estimate,
@@ -184,8 +185,8 @@ def _gap(bench: StructureBench, fit: Fit) -> Gap:
 
 
 def _base_estimates(bench: StructureBench, fit: Fit) -> tuple[Estimate, ...]:
-    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
-    sd = np.sqrt(np.maximum(np.diag(fit.covariance)[: fit.n_base] * widened, 0.0))
+    variance = np.diag(stated_covariance(fit, bench.blocks))[: fit.n_base]
+    sd = np.sqrt(np.maximum(variance, 0.0))
     campaign, layout = bench.campaign, bench.layout
     nominal = nominal_values(campaign.bodies, campaign.nominal, layout)
     values = nominal * np.exp(fit.base)

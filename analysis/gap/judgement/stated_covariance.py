@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+"""Covariance of a fit as its report states it."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
+
+
+def stated_covariance(fit: Fit, blocks: Blocks) -> FloatArray:
+    """Return the covariance of the coordinates of a fit, shape (n, n).
+
+    It is that of the curvature, widened where chi2 exceeds its degrees of freedom.
+    Where the sd of the residual holds an error of the model, that error is the same
+    throughout a record, and its samples do not average it out: no sd is then below the
+    one that the records show as clusters.
+
+    Args:
+        fit: with its derivatives.
+        blocks: its rows as records.
+
+    Source:
+        Liang and Zeger 1986, Biometrika 73, 13: H^-1 (sum g g') H^-1 with the score g
+        of each record.
+    """
+    covariance = fit.covariance * max(fit.chi2 / blocks.dof, 1.0)
+    records = blocks.shape[0]
+    if blocks.white or records < 2:
+        return np.asarray(covariance)
+    rows = fit.residual.reshape(records, 1, -1)
+    slopes = fit.jacobian.reshape(records, rows.shape[2], -1)
+    scores = (rows @ slopes)[:, 0] * np.sqrt(records / (records - 1))
+    spread = scores.T @ scores + np.diag(fit.prior)
+    shown = np.diag(fit.covariance @ spread @ fit.covariance)
+    curved = np.maximum(np.diag(covariance), np.finfo(float).tiny)
+    ratio = np.sqrt(np.maximum(shown / curved, 1.0))
+    return np.asarray(covariance * np.outer(ratio, ratio))
