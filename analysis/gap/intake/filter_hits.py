@@ -98,7 +98,7 @@ def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
     samples = raw.hits[0].counts.shape[1]
     kept = np.arange(samples - found.raw_force.shape[1], samples, found.filter.step)
     gain = float(np.linalg.norm(found.filter.kernel))
-    return replace(found, hum=hum.left(kept.astype(float)) / gain)
+    return replace(found, hum_left=hum.left(kept.astype(float)) / gain)
 
 
 def _filtered(

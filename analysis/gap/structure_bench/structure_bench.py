@@ -393,12 +393,13 @@ class StructureBench:
             rows: shape (n_records, ..., n_channels, n_samples).
         """
         hits, count = self.campaign.hits, rows.shape[-1]
-        if not hits.hum.size:
+        if not hits.hum_left.size:
             return rows
         found: HumWhitening = self._kept(
-            ("hum", count),
+            ("hum_left", count),
             lambda: hum_whitening(
-                hits.hum[:, :count], hits.noise * np.sqrt(self.coherence) / self.sigma
+                hits.hum_left[:, :count],
+                hits.noise * np.sqrt(self.coherence) / self.sigma,
             ),
         )
         return found(rows)

@@ -43,8 +43,8 @@ class HitRecords:
         raw_force: unfiltered force [N] from the first sample on, (n_records, n_raw).
         filter: that both have passed.
         rejected: hits left out.
-        hum: what may be left of offset and mains hum in a record, in directions of unit
-            sd over the noise of the channel, shape (n_directions, n_samples).
+        hum_left: what may be left of offset and mains hum in a record, in directions of
+            unit sd over the noise of the channel, shape (n_directions, n_samples).
     """
 
     names: tuple[str, ...]
@@ -60,12 +60,12 @@ class HitRecords:
     raw_force: FloatArray
     filter: CommonFilter
     rejected: tuple[RejectedHit, ...] = ()
-    hum: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    hum_left: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "force", "response", "noise", "point", "torque", "level")
-        freeze(self, "raw_force", "hum")
+        freeze(self, "raw_force", "hum_left")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
