@@ -45,7 +45,7 @@ _ROW_WORDS = """
 true effect is taken out of the catalogue; right is `unknown`. `pair`: two effects.
 `exact`: the modal table lists the modes of the bodies; `life`: frequencies off by 0.2
 to 1 %, shapes by 2 %. `family`: an effect that hits hardly distinguish from the true
-one.
+one. `crash`: an internal error, or more than 600 CPU s.
 """
 
 
