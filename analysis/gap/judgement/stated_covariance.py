@@ -23,7 +23,8 @@ def stated_covariance(fit: Fit, blocks: Blocks) -> FloatArray:
         Liang and Zeger 1986, Biometrika 73, 13: H^-1 (sum g g') H^-1 with the score g
         of each record.
     """
-    covariance = fit.covariance * max(fit.chi2 / blocks.dof, 1.0)
+    inverse = fit.covariance
+    covariance = inverse * max(fit.chi2 / blocks.dof, 1.0)
     records = blocks.shape[0]
     if blocks.white or records < 2:
         return np.asarray(covariance)
@@ -31,7 +32,7 @@ def stated_covariance(fit: Fit, blocks: Blocks) -> FloatArray:
     slopes = fit.jacobian.reshape(records, rows.shape[2], -1)
     scores = (rows @ slopes)[:, 0] * np.sqrt(records / (records - 1))
     spread = scores.T @ scores + np.diag(fit.prior)
-    shown = np.diag(fit.covariance @ spread @ fit.covariance)
+    shown = np.diag(inverse @ spread @ inverse)
     curved = np.maximum(np.diag(covariance), np.finfo(float).tiny)
     ratio = np.sqrt(np.maximum(shown / curved, 1.0))
     return np.asarray(covariance * np.outer(ratio, ratio))
