@@ -22,6 +22,7 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
+from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -32,6 +33,24 @@ def one_of_each(hits: HitRecords) -> IntArray:
         key = (float(hits.point[k]), float(hits.torque[k]), float(hits.level[k]))
         seen.setdefault(key, k)
     return np.array(sorted(seen.values()), dtype=np.int64)
+
+
+def torques_in_turn(hits: HitRecords) -> IntArray:
+    """Return one record of each combination of point and level, torques in turn.
+
+    Every torque meets every level and every point, in a third of the records where
+    there are three torques.
+    """
+    torques, levels = np.unique(hits.torque), np.unique(hits.level)
+    best: dict[tuple[int, int], tuple[int, int]] = {}
+    for k in one_of_each(hits):
+        point = int(hits.point[k])
+        level = int(np.searchsorted(levels, hits.level[k]))
+        torque = int(np.searchsorted(torques, hits.torque[k]))
+        late = (torque - point - level) % torques.size
+        own = late, int(k)
+        best[point, level] = min(best.get((point, level), own), own)
+    return np.array(sorted(k for _, k in best.values()), dtype=np.int64)
 
 
 def approached(
@@ -46,13 +65,37 @@ def approached(
         start: base coordinates, then those of the effects.
         candidates: effects.
     """
+    few, fit = in_windows(few, start, candidates)
+    return in_full(few, fit)
+
+
+def in_windows(
+    few: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    rival: float | None = None,
+) -> tuple[StructureBench, Fit]:
+    """Fit one record of each condition in windows; one far off in the first alone.
+
+    Args:
+        few: one record of each condition.
+        start: base coordinates, then those of the effects.
+        candidates: effects.
+        rival: cost per row of the best fit so far, which a descent should reach.
+    """
     x = start
     for window in STRUCTURE.approach_windows:
-        few, fit = _settled_in(few, x, candidates, Resolution(window))
+        few, fit = _settled_in(few, x, candidates, Resolution(window), rival=rival)
         x = fit.x
         if not near_records(few, fit):
             break
-    return _settled_in(few, x, candidates, FULL)
+    return few, fit
+
+
+def in_full(few: StructureBench, fit: Fit) -> tuple[StructureBench, Fit]:
+    """Fit one record of each condition whole, from a fit in windows."""
+    return _settled_in(few, fit.x, fit.candidates, FULL)
 
 
 def near_records(bench: StructureBench, fit: Fit) -> bool:
@@ -65,9 +108,13 @@ def _settled_in(
     x: FloatArray,
     candidates: Sequence[Candidate],
     window: Resolution,
+    *,
+    rival: float | None = None,
 ) -> tuple[StructureBench, Fit]:
     """Fit a window, in turn with where each hit landed."""
+    rows = _rows(few, window)
     landing = few.landing
+    last: Fit | None = None
     for k in range(STRUCTURE.approach_rounds):
         terms = split(x, few.base_sd.size, candidates)
         few = few.at(x[: few.base_sd.size], terms, landing, few.floor)
@@ -75,18 +122,37 @@ def _settled_in(
         before = cost_at(problem, x, window)
         fit = minimise(
             problem,
-            x,
+            x if last is None else last,
             window,
             iterations=STRUCTURE.approach_iterations,
+            rival=None if rival is None else rival * rows,
             exact_slopes=False,
+            least_drop=_least_drop(few, candidates, window),
         )
         x = fit.x
+        # With laws, slopes cost more than all else: those of the last round do.
+        last = fit if few.nonlinear(candidates) else None
         if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
             break
         if not near_records(few, fit):
             break
         landing, _ = few.landed(fit.base, fit.terms, window.window)
     return few, fit
+
+
+def _least_drop(
+    bench: StructureBench, candidates: Sequence[Candidate], window: Resolution
+) -> float:
+    """Return the drop of the cost below which a fit with laws need not go on."""
+    if not bench.nonlinear(candidates):
+        return 0.0
+    return STRUCTURE.law_drop * _rows(bench, window)
+
+
+def _rows(bench: StructureBench, window: Resolution) -> int:
+    """Return the samples of all records in a window."""
+    records, channels, _ = bench.blocks.shape
+    return records * channels * window_count(bench.campaign.hits, window.window)
 
 
 def settled(
@@ -113,7 +179,9 @@ def settled(
         if near:
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        before, fit = fit.cost, _whole(bench, fit.x, candidates, exact=near)
+        law = bench.nonlinear(candidates)
+        before = fit.cost
+        fit = _whole(bench, fit if law else fit.x, candidates, exact=near and not law)
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
         if before - fit.cost < least * fit.cost:
             break
@@ -165,7 +233,7 @@ def fitted_finely(
 
 def _whole(
     bench: StructureBench,
-    start: FloatArray,
+    start: FloatArray | Fit,
     candidates: Sequence[Candidate],
     *,
     exact: bool = False,
@@ -177,6 +245,7 @@ def _whole(
         FULL,
         iterations=STRUCTURE.whole_iterations,
         exact_slopes=exact,
+        least_drop=_least_drop(bench, candidates, FULL),
     )
 
 

@@ -39,6 +39,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     fitted_finely,
     one_of_each,
     settled,
+    torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
@@ -83,6 +84,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     if first.passed:
         return _complete(whole, base, first, UNTESTED)
     progress("directed tests")
+    few = few.chosen(torques_in_turn(few.campaign.hits))
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
@@ -114,7 +116,14 @@ def _with_a_second(
         near = minimise(problem, first.x, SHORT, iterations=STRUCTURE.short_iterations)
         pairs += carried(own, near, tested(own, near), progress)
     different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
-    return _best_first(few, list(different.values()))
+    return affordable(few, _best_first(few, list(different.values())))
+
+
+def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:
+    """Return pairs for whole records: few with a law, which is integrated there."""
+    laws = [f for f in pairs if few.nonlinear(f.candidates)]
+    left = laws[STRUCTURE.law_pairs :]
+    return [f for f in pairs if all(f is not one for one in left)]
 
 
 def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:
