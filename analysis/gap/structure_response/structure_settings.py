@@ -189,8 +189,8 @@ class StructureSettings:
         "chi2 per sample",
         "drop of the cost below which a fit with an integrated law ends before it is "
         "fitted with the time integration that is judged",
-        "30 units of chi2 of twelve hits: rivals are told apart in the steps that "
-        "follow, on all hits",
+        "30 units of chi2 of twelve hits: the steps that follow, on all hits, separate "
+        "rivals",
     )
     whole_iterations: int = numerical(
         8, "steps", "most steps of a fit to whole records in one round"

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
@@ -21,36 +21,8 @@ from jointbench.analysis.gap.residuals.fit_records import Fit, split
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
-
-
-def one_of_each(hits: HitRecords) -> IntArray:
-    """Return the first record of each combination of point, torque and level."""
-    seen: dict[tuple[float, ...], int] = {}
-    for k in range(len(hits.names)):
-        key = (float(hits.point[k]), float(hits.torque[k]), float(hits.level[k]))
-        seen.setdefault(key, k)
-    return np.array(sorted(seen.values()), dtype=np.int64)
-
-
-def torques_in_turn(hits: HitRecords) -> IntArray:
-    """Return one record of each combination of point and level, torques in turn.
-
-    Every torque meets every level and every point, in a third of the records where
-    there are three torques.
-    """
-    torques, levels = np.unique(hits.torque), np.unique(hits.level)
-    best: dict[tuple[int, int], tuple[int, int]] = {}
-    for k in one_of_each(hits):
-        point = int(hits.point[k])
-        level = int(np.searchsorted(levels, hits.level[k]))
-        torque = int(np.searchsorted(torques, hits.torque[k]))
-        late = (torque - point - level) % torques.size
-        own = late, int(k)
-        best[point, level] = min(best.get((point, level), own), own)
-    return np.array(sorted(k for _, k in best.values()), dtype=np.int64)
 
 
 def approached(
@@ -143,7 +115,7 @@ def _settled_in(
 def _least_drop(
     bench: StructureBench, candidates: Sequence[Candidate], window: Resolution
 ) -> float:
-    """Return the drop of the cost below which a fit with laws need not go on."""
+    """Return the drop of the cost below which a fit with laws need not continue."""
     if not bench.nonlinear(candidates):
         return 0.0
     return STRUCTURE.law_drop * _rows(bench, window)

@@ -28,6 +28,10 @@ from jointbench.analysis.gap.search.screening import Screening
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.records_of_search import (
+    one_of_each,
+    torques_in_turn,
+)
 from jointbench.analysis.gap.structure_search.short_windows import (
     SHORT,
     carried,
@@ -37,9 +41,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     approached,
     fitted_finely,
-    one_of_each,
     settled,
-    torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,

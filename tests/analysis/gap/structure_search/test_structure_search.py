@@ -14,11 +14,11 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
-from jointbench.analysis.gap.structure_search.structure_fits import (
-    accept_structure,
+from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
+from jointbench.analysis.gap.structure_search.structure_fits import accept_structure
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
     StructureOutcome,
