@@ -30,6 +30,8 @@ class PortLaws:
             k3 [N/m^3], k2 [N/m^2] or c2 [N s^2/m^2], as the kind states.
         slips: displacement at which each slider slips [m], shape (n_sliders,).
         weights: share of each slider in them; they sum to 1, shape (n_sliders,).
+        gradual: number of sliders that yield gradually, the last ones; the others
+            yield at once.
         kind: of the law.
         gap: clearance of a stop [m].
         preload: power of the slip displacements in the bolt torque [-].
@@ -42,10 +44,16 @@ class PortLaws:
     kind: LawForm = LawForm.FRICTION
     gap: float = 0.0
     preload: float = 0.0
+    gradual: int = 0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "slips", "weights")
+
+    @property
+    def sharp(self) -> int:
+        """Number of sliders that yield at once."""
+        return self.slips.size - self.gradual
 
 
 def law_ports(laws: tuple[PortLaws, ...]) -> tuple[int, ...]:
