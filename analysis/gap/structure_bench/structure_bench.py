@@ -201,7 +201,10 @@ class StructureBench:
     def may_add(self, candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
         """Return whether an effect may be fitted beside others."""
         names = {e.effect.name for e in self.entries if e.by_frequency}
+        lonely = {e.effect.name for e in self.entries if e.alone}
         every = (candidate, *fitted)
+        if fitted and any(c.effect.name in lonely for c in every):
+            return False
         apart = any(c.effect.name in names for c in every) and self.nonlinear(every)
         return may_join(candidate, fitted) and not apart
 
