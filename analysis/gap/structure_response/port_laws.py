@@ -68,22 +68,22 @@ def iwan_sliders(
 
     The stiffness below a slip displacement phi is (phi / largest)^power, as in the
     effect ``iwan`` of lumped joints. All of it below the onset is one slider, so that
-    smaller motions do not slip. Further cells are equally wide; a slider sits at the
-    mean slip displacement of its cell.
+    smaller motions do not slip. Further cells end at a constant ratio: soft hits slip
+    the weak sliders alone. A slider sits at the mean slip displacement of its cell.
 
     Args:
         largest: slip displacement [m].
         power: chi + 1 of Segalman's density [-], above 0; chi + 2 with the chi that
             `iwan` reports, which is one less.
         onset: end of the first cell over the largest slip displacement [-], below 1; 0
-            for a cell as wide as the others.
+            for one over the number of sliders.
 
     Source:
         Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1).
     """
     count = STRUCTURE.sliders
     first = onset if onset > 0.0 else 1.0 / count
-    edges = np.concatenate([[0.0], np.linspace(first, 1.0, count)])
+    edges = np.concatenate([[0.0], np.geomspace(first, 1.0, count)])
     weights = np.diff(edges**power)
     means = np.diff(edges ** (power + 1.0)) / weights * power / (power + 1.0)
     return largest * means, weights
