@@ -22,8 +22,8 @@ PLANE_LOSS = 0.5
 
 MAP_ERROR = 1e-3
 """Error of S at each lag of a map that its covariance does not include [-]: without it
-one smooth clean map in ten is rejected at a level of 1 %, by directions in which heights
-that are not levelled would hardly scatter."""
+one smooth clean map in ten is rejected at a level of 1 %, by directions in which
+heights that are not levelled would hardly scatter."""
 INDEPENDENT_ROWS = 8.0
 """Rows farther apart than this are independent profiles [samples]."""
 
