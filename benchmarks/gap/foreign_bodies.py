@@ -75,16 +75,10 @@ def _numbered(rows: Array) -> list[tuple[int, list]]:
     return list(enumerate(rows.tolist(), 1))
 
 
-def plates(thickness: tuple[float, float] = (0.02, 0.016)) -> tuple[FemBody, FemBody]:
-    """Return the lower and the upper plate.
-
-    Args:
-        thickness: of both [m]; the nominal one if it is left out. The interface stays.
-    """
-    lower = _plate(
-        "lower", (0.0, 0.0, INTERFACE - thickness[0]), (0.36, 0.2, thickness[0])
-    )
-    upper = _plate("upper", (0.03, 0.02, INTERFACE), (0.3, 0.16, thickness[1]))
+def plates() -> tuple[FemBody, FemBody]:
+    """Return the lower and the upper plate."""
+    lower = _plate("lower", (0.0, 0.0, 0.0), (0.36, 0.2, INTERFACE))
+    upper = _plate("upper", (0.03, 0.02, INTERFACE), (0.3, 0.16, 0.016))
     return lower, upper
 
 

@@ -47,7 +47,7 @@ NOISE = {"force": 0.02, "acceleration": 0.01}
 NOMINAL = {"normal": 3e8, "tangential": 1.2e8, "normal_damping": 400.0}
 NOMINAL |= {"tangential_damping": 200.0, "foot": 6e4, "foot_damping": 30.0}
 NOMINAL |= {"damping_ratio": 0.004}
-HIDDEN = ("none", "loose", "iwan", "thickness")
+HIDDEN = ("none", "loose", "iwan")
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,6 @@ class Truth:
         slip: largest slip displacement of the Iwan law [m].
         share: of the tangential stiffness that its sliders hold.
         power: of their distribution.
-        thicker: factor on the thickness of the upper plate.
     """
 
     hide: str
@@ -72,7 +71,6 @@ class Truth:
     slip: float = 10e-6
     share: float = 0.6
     power: float = 1.5
-    thicker: float = 1.0
 
 
 def draw_truth(seed: int, hide: str) -> Truth:
@@ -85,8 +83,6 @@ def draw_truth(seed: int, hide: str) -> Truth:
     found = Truth(hide, tuple(factors), tuple(joints), tuple(ratio))
     if hide == "loose":
         return replace(found, joints=(joints[0] * 0.25, joints[1]))
-    if hide == "thickness":
-        return replace(found, thicker=1.06)
     return found
 
 
@@ -258,15 +254,13 @@ def make_session(path: Path, truth: Truth, seed: int, repeats: int = 2) -> dict:
         Facts: largest relative motion of the joint [m], natural frequencies [Hz].
     """
     rng = np.random.default_rng([seed, 1])
-    bodies = plates((0.02, 0.016 * truth.thicker))
+    bodies = plates()
     system = _system(bodies, truth)
-    read = np.array(
-        [_place_rows(bodies, *one) for one in _moved(SENSORS, truth).values()]
-    )
+    read = np.array([_place_rows(bodies, *one) for one in SENSORS.values()])
     plan = [(p, level) for p in POINTS for level in LEVELS for _ in range(repeats)]
     inputs, pulses = [], []
     for name, level in plan:
-        body, place, direction = _moved(POINTS, truth)[name]
+        body, place, direction = POINTS[name]
         aim, tilt = 1e-3 * rng.standard_normal(3), 0.017 * rng.standard_normal(3)
         along = np.asarray(direction)
         aim -= along * (along @ aim)
@@ -307,18 +301,6 @@ def make_session(path: Path, truth: Truth, seed: int, repeats: int = 2) -> dict:
         "frequencies": (np.sqrt(np.maximum(system.omega2[:20], 0)) / 2 / np.pi)
         .round(1)
         .tolist()
-    }
-
-
-def _moved(places: dict, truth: Truth) -> dict:
-    """Return places on plates as they are: those above the interface rise with it."""
-    return {
-        name: (
-            body,
-            (x, y, 0.02 + (z - 0.02) * truth.thicker) if body == "upper" else (x, y, z),
-            along,
-        )
-        for name, (body, (x, y, z), along) in places.items()
     }
 
 

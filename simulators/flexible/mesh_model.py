@@ -21,7 +21,7 @@ from jointbench.simulators.flexible.joint_values import (
 _CELL = 0.02  # largest side of an element in the plane of a body [m]
 _RADIUS = 0.006  # of the area that stands for a bolt, a point in the simulation [m]
 _BAND = 2000.0  # modes beyond the simulated ones matter above [Hz]
-_SHAPE_ERROR = 0.005  # of the mesh beside the simulated bodies [-]
+_SHAPE_ERROR = 0.01  # of the mesh beside the simulated bodies [-]
 
 
 def mesh_model_text(bench: FlexibleBench) -> str:

@@ -28,9 +28,11 @@ def stated_covariance(fit: Fit, blocks: Blocks) -> FloatArray:
     records = blocks.shape[0]
     if blocks.white or records < 2:
         return np.asarray(covariance)
-    rows = fit.residual.reshape(records, 1, -1)
-    slopes = fit.jacobian.reshape(records, rows.shape[2], -1)
-    scores = (rows @ slopes)[:, 0] * np.sqrt(records / (records - 1))
+    count = fit.residual.size // records
+    # By records: the slopes of all of them, reshaped, would be copied.
+    each = (slice(k * count, (k + 1) * count) for k in range(records))
+    scores = np.stack([fit.residual[own] @ fit.jacobian[own] for own in each])
+    scores *= np.sqrt(records / (records - 1))
     spread = scores.T @ scores + np.diag(fit.prior)
     shown = np.diag(inverse @ spread @ inverse)
     curved = np.maximum(np.diag(covariance), np.finfo(float).tiny)

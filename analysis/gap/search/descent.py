@@ -64,6 +64,10 @@ def jacobian_of(
     return columns.T
 
 
+_NO_SLOPES = np.zeros((0, 0))
+"""In the place of slopes that are computed again: two sets double the memory."""
+
+
 def minimise(
     problem: FitProblem,
     start: FloatArray | Fit,
@@ -117,6 +121,7 @@ def minimise(
         if moved is None:
             if age == 0:
                 break
+            near.j = j = _NO_SLOPES
             j, age, damping = slopes(x, r), 0, 1e-3
             continue
         drop = cost - moved[2]
@@ -137,8 +142,11 @@ def minimise(
         ):
             j, age = _secant(j, change, r - before), age + 1
         else:
+            near.j = j = _NO_SLOPES
             j, age = slopes(x, r), 0
+        near.j = _NO_SLOPES
     if age > 0 and exact_slopes:
+        j = _NO_SLOPES
         j = slopes(x, r)
     return Fit(
         x, problem.n_base, problem.candidates, r, j, cost, problem.prior, problem.centre
@@ -202,14 +210,19 @@ class _Neighbourhood:
 
 
 def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
-    """Update slopes from the residuals of a step, without further evaluation.
+    """Update slopes in place from the residuals of a step, without an evaluation.
 
     Source:
         Broyden 1965, Math. Comp. 19, 577, eq. (4.5), with parameters scaled by the
         norm of their columns.
     """
     along = np.einsum("ij,ij->j", j, j) * change
-    return j + np.outer(difference - j @ change, along / (change @ along))
+    left, weights = difference - j @ change, along / (change @ along)
+    moved = j if j.flags.writeable else j.copy()
+    # Column by column: a second set of slopes would double the memory.
+    for column, weight in zip(moved.T, weights, strict=True):
+        column += left * weight
+    return moved
 
 
 def _problem_dof(problem: FitProblem) -> int:

@@ -129,7 +129,8 @@ class StructureBench:
             return 1.0
         points = np.unique(self.campaign.hits.point).size
         records, _, count = self.campaign.hits.response.shape
-        modes = max(len(self.layout.tuned), 1)
+        near = self.campaign.bodies.modes_near(self.campaign.hits.band)
+        modes = max(len(near), 1)
         return float(records / points * max(count / (2 * modes), 1.0))
 
     @property

@@ -12,7 +12,6 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import (
     JointedBodies,
     NominalBench,
 )
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 class BaseName(StrEnum):
@@ -95,7 +94,7 @@ def base_layout(
         nominal: nominal parameters.
         band: highest frequency with force [Hz].
     """
-    tuned = _tuned(bodies, band) if nominal.table_sd[0] > 0.0 else ()
+    tuned = bodies.modes_near(band) if nominal.table_sd[0] > 0.0 else ()
     count = bodies.bolts.shape[0]
     compliant = tuple(d for d in range(3) if not bodies.rigid[d])
     common = float(np.hypot(nominal.stiffness_sd, nominal.bolt_sd / np.sqrt(count)))
@@ -113,19 +112,6 @@ def base_layout(
     rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
     names, sd, units = zip(*rows, strict=True)
     return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count), tuned)
-
-
-def _tuned(bodies: JointedBodies, band: float) -> tuple[tuple[int, str], ...]:
-    """Return the elastic modes up to some way above the band, with their names."""
-    highest = 2.0 * np.pi * band * STRUCTURE.tuned_band
-    elastic = bodies.omega > STRUCTURE.rigid_share * 2.0 * np.pi * band
-    found = []
-    for mode in np.flatnonzero(elastic & (bodies.omega < highest)):
-        body = int(bodies.body[mode])
-        first = int(np.flatnonzero(elastic & (bodies.body == body))[0])
-        name = f"frequency {bodies.bodies[body]} {mode - first + 1}"
-        found.append((int(mode), name))
-    return tuple(found)
 
 
 def _contrasts(count: int) -> FloatArray:

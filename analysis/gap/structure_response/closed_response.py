@@ -11,7 +11,9 @@ of the joints is solved for all lines at once. The slopes come from the same clo
 dH/dz_j = (R D J' A^-1)_j (A^-1 J D B')_j, and dH/dD_n is the product of closed rows.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -234,13 +236,19 @@ def dynamic_stiffness(attached: Attached, s: ComplexArray) -> ComplexArray:
     return np.asarray(inertia * spring / (s**2 + spring))
 
 
+_Slope = Callable[[], ComplexArray]
+"""Computes the derivative of the response, shape (n_lines, n_rows, n_columns)."""
+
+
 def response_slopes(
     found: Closure,
     bodies: JointedBodies,
     state: JointState,
     layout: BaseLayout,
-) -> dict[str, ComplexArray]:
+) -> dict[str, _Slope]:
     """Return the derivative of the response by each base coordinate.
+
+    All of them at once are several times as large as the response to all hits.
 
     Args:
         found: closed response.
@@ -249,17 +257,18 @@ def response_slopes(
         layout: base coordinates.
 
     Returns:
-        By coordinate, shape (n_lines, n_rows, n_columns) each.
+        By coordinate, each computed when it is called.
     """
     ends = closed_rows(found, bodies, state)
     slopes = _modal_slopes(found, ends, bodies, state, layout)
     left = ends.left.transpose(0, 2, 1)
-    for name, (joints, change) in _compliance_slopes(
-        found, bodies, state, layout
-    ).items():
+
+    def across(joints: IntArray, change: ComplexArray) -> ComplexArray:
         weighted = change[:, :, None] * ends.right[:, joints]
-        slopes[name] = left[:, :, joints] @ weighted
-    return slopes
+        return np.asarray(left[:, :, joints] @ weighted)
+
+    changes = _compliance_slopes(found, bodies, state, layout)
+    return slopes | {name: partial(across, *one) for name, one in changes.items()}
 
 
 def _modal_slopes(
@@ -268,7 +277,7 @@ def _modal_slopes(
     bodies: JointedBodies,
     state: JointState,
     layout: BaseLayout,
-) -> dict[str, ComplexArray]:
+) -> dict[str, _Slope]:
     """Return the slopes by modulus, mass, damping ratio and frequencies."""
     omega, s = state.omega(bodies), found.s[:, None]
     d = modal_receptances(bodies, state, found.s)
@@ -276,20 +285,21 @@ def _modal_slopes(
     loss = state.loss[bodies.body]
     by_loss = square * 2.0 * loss * omega * s
     by_modulus = square * (loss * omega * s + omega**2)
+    twice = 2.0 * by_modulus
 
     def across(change: ComplexArray, modes: slice) -> ComplexArray:
         rows = ends.rows[:, :, modes] * change[:, None, modes]
         return np.asarray(rows @ ends.columns[:, modes])
 
-    slopes: dict[str, ComplexArray] = {}
+    slopes: dict[str, _Slope] = {}
     for k, name in enumerate(bodies.bodies):
         own = np.flatnonzero(bodies.body == k)
         modes = slice(int(own[0]), int(own[-1]) + 1)
-        slopes[modulus_name(name)] = across(by_modulus, modes)
-        slopes[loss_name(name)] = across(by_loss, modes)
-        slopes[mass_name(name)] = across(-d, modes)
+        slopes[modulus_name(name)] = partial(across, by_modulus, modes)
+        slopes[loss_name(name)] = partial(across, by_loss, modes)
+        slopes[mass_name(name)] = partial(across, -d, modes)
     for mode, name in layout.tuned:
-        slopes[name] = across(2.0 * by_modulus, slice(mode, mode + 1))
+        slopes[name] = partial(across, twice, slice(mode, mode + 1))
     return slopes
 
 

@@ -116,9 +116,10 @@ class HitModel:
         for k, name in enumerate(layout.names):
             rows = np.empty((len(weights), *self.shape))
             for one, own in zip(self.closures, slopes, strict=True):
-                found = self._struck(own[name], one.records, weights)
+                slope = own[name]()
+                found = self._struck(slope, one.records, weights)
                 if self.forces is not None:
-                    found += self._pushed(own[name], self.forces[one.records])
+                    found += self._pushed(slope, self.forces[one.records])
                 if changes:
                     moved = changes[k][one.records]
                     found += self._pushed(one.closure.response, moved)

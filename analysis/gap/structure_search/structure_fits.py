@@ -17,7 +17,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
     FULL,
     Resolution,
 )
-from jointbench.analysis.gap.residuals.fit_records import Fit, split
+from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
@@ -152,6 +152,9 @@ def settled(
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
         law = bench.nonlinear(candidates)
+        if not law:
+            # Slopes of all records are the largest array there is: none are kept twice.
+            fit = without_slopes(fit)
         before = fit.cost
         fit = _whole(bench, fit if law else fit.x, candidates, exact=near and not law)
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
