@@ -36,7 +36,11 @@ from jointbench.simulators.flexible.joint_values import (
     draw_nominal,
     draw_true,
 )
-from jointbench.simulators.flexible.physical_bodies import physical_bodies
+from jointbench.simulators.flexible.physical_bodies import (
+    MESHED_EFFECTS,
+    physical_bodies,
+    thicker_body,
+)
 from jointbench.simulators.flexible.sensor_chain import (
     FULL_SCALE,
     InputNoise,
@@ -127,7 +131,26 @@ def draw_bench(
         rng,
     )
     drawn = tuple(draw_effect_of(name, scales, rng) for name in names)
-    return replace(plain, levels=levels, hits=hits, noise=noise, effects=drawn)
+    made = replace(plain, levels=levels, hits=hits, noise=noise, effects=drawn)
+    return _grown(made)
+
+
+def _grown(bench: FlexibleBench) -> FlexibleBench:
+    """Return a bench whose bodies have the thickness that is hidden."""
+    bodies = bench.bodies
+    for effect in bench.effects:
+        if effect.name in MESHED_EFFECTS:
+            factor = effect.parameters["factor"]
+            first, second = (
+                thicker_body(one, factor)
+                if one.body.name == effect.where["body"]
+                else one
+                for one in bodies
+            )
+            bodies = first, second
+    if bodies is bench.bodies:
+        return bench
+    return replace(bench, coordinates=specimen_coordinates(bench.specimen, bodies))
 
 
 def _noise(force: float, acceleration: float, rng: np.random.Generator) -> InputNoise:

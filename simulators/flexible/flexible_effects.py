@@ -62,11 +62,11 @@ def draw_effect_of(
     """Draw place and size of an effect.
 
     Args:
-        name: one of `FLEXIBLE_EFFECTS` or `FLEXIBLE_OUTSIDE`.
+        name: one of `FLEXIBLE_EFFECTS`, `MESHED_EFFECTS` or `FLEXIBLE_OUTSIDE`.
         scales: of the specimen.
         rng: source of the draws.
     """
-    drawn = {**_CATALOGUE, **_OUTSIDE}[require_flexible(name)](scales, rng)
+    drawn = _EVERY[require_flexible(name)](scales, rng)
     return FlexibleEffect(name, drawn.where, drawn.parameters)
 
 
@@ -76,8 +76,8 @@ def require_flexible(name: str) -> str:
     Raises:
         UsageError: there is no such effect.
     """
-    if name not in _CATALOGUE and name not in _OUTSIDE:
-        known = ", ".join((*_CATALOGUE, *_OUTSIDE))
+    if name not in _EVERY:
+        known = ", ".join(_EVERY)
         raise UsageError(f"effect {name!r} is unknown; there are {known}")
     return name
 
@@ -224,6 +224,13 @@ def _body(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
     return _effect({"body": s.specimen.bodies[body].name}, factor=factor)
 
 
+def _thickness(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
+    """Return a thickness beyond what a drawing allows for."""
+    body = int(rng.integers(2))
+    factor = 1 + _sign(rng) * float(rng.uniform(0.05, 0.12))
+    return _effect({"body": s.specimen.bodies[body].name}, factor=factor)
+
+
 def _spring(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
     """Return a spring to the ground that alone lifts a body to 60 to 250 Hz."""
     mass = sum(body.block.mass for body in s.specimen.bodies)
@@ -350,6 +357,8 @@ _OUTSIDE: Mapping[str, Draw] = MappingProxyType(
         "foot_stop": _foot_stop,
     }
 )
+_MESHED: Mapping[str, Draw] = MappingProxyType({"thickness": _thickness})
+_EVERY: Mapping[str, Draw] = MappingProxyType({**_CATALOGUE, **_MESHED, **_OUTSIDE})
 FLEXIBLE_EFFECTS = tuple(_CATALOGUE)
 """Effects that hits can show and a catalogue can name."""
 FLEXIBLE_OUTSIDE = tuple(_OUTSIDE)

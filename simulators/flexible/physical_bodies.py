@@ -6,7 +6,7 @@ that of the drawing: the true frequencies are off by 0.2 to 1 %, the true shapes
 rotation of those of the table by 2 %, and the body may have modes that the table lacks.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
@@ -16,6 +16,7 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.flexible.block_modes import (
     RIGID,
     BlockModes,
+    block_modes,
     displacement,
     displacement_gradient,
     displacements,
@@ -30,6 +31,8 @@ from jointbench.simulators.flexible.flexible_specimen import (
 WORLDS = ("exact", "life")
 FREQUENCY_ERRORS = (0.002, 0.01)
 """Relative standard deviation of the frequencies of a table, drawn log-uniformly."""
+MESHED_EFFECTS = ("thickness",)
+"""Effects that a model of meshed bodies shows, and a modal table does not."""
 SHAPE_ERROR = 0.02
 """Mean norm of what is mixed into a mode shape [-]."""
 _NEAR = 0.3  # distance in the logarithm of the frequency that halves the mixing
@@ -45,6 +48,8 @@ class PhysicalBody:
         listed: number of modes in the table, rigid ones included.
         frequency: true ones [Hz], shape (n_modes,).
         mixing: true modes in those of the drawing, shape (n_modes, n_modes).
+        grown: modes of the body as it is, where a side has another length than in the
+            drawing; places on it are where they are on the body of the drawing.
     """
 
     body: ElasticBody
@@ -52,6 +57,7 @@ class PhysicalBody:
     listed: int
     frequency: FloatArray
     mixing: FloatArray
+    grown: BlockModes | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -59,7 +65,11 @@ class PhysicalBody:
 
     def rows(self, place: Vector) -> FloatArray:
         """Return the true displacement at a place [1/kg^0.5], shape (3, n_modes)."""
-        return displacement(self.modes, self.body.within(place)) @ self.mixing
+        at = self.body.within(place)
+        if self.grown is None:
+            return displacement(self.modes, at) @ self.mixing
+        ratio = np.array(self.grown.block.size) / np.array(self.modes.block.size)
+        return displacement(self.grown, at * ratio) @ self.mixing
 
     def table_rows(self, place: Vector) -> FloatArray:
         """Return the displacement at a place in the table, shape (3, listed)."""
@@ -102,6 +112,28 @@ def physical_bodies(
         _physical(body, world == "exact", beyond, rng) for body in specimen.bodies
     )
     return first, second
+
+
+def thicker_body(body: PhysicalBody, factor: float) -> PhysicalBody:
+    """Return a body with its shortest side longer by a factor.
+
+    Args:
+        body: of an exact table.
+        factor: thickness over that of the drawing [-].
+    """
+    block = body.modes.block
+    size = list(block.size)
+    side = int(np.argmin(size))
+    size[side] *= factor
+    grown = block_modes(
+        replace(block, size=(size[0], size[1], size[2])),
+        terms=body.modes.terms,
+        elastic=body.modes.frequency.size - RIGID,
+    )
+    shift = grown.frequency[RIGID:] / body.modes.frequency[RIGID:]
+    frequency = body.frequency.copy()
+    frequency[RIGID:] *= shift
+    return replace(body, frequency=frequency, grown=grown)
 
 
 def _physical(

@@ -9,6 +9,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
 from jointbench.analysis.gap.catalogue.catalogue import (
     ALL_REAL_JOINTS,
@@ -26,6 +27,7 @@ from jointbench.analysis.gap.intake.read_hit_campaign import HIT_SCHEMA
 from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.station.bolted.free_bodies import gap_table
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.contact_section import contact_sections
@@ -43,7 +45,12 @@ from jointbench.station.gap.session_hits import (
     judged_recordings,
     with_preloads,
 )
-from jointbench.station.gap.structure_files import examine_structure, nominal_beside
+from jointbench.station.gap.structure_files import (
+    examine_meshed,
+    examine_recordings,
+    examine_structure,
+    nominal_beside,
+)
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
 from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.gap.surface_gap_section import surface_gap_sections
@@ -52,6 +59,8 @@ from jointbench.station.joint_states.joint_state_files import (
     names_states,
     read_joints,
 )
+from jointbench.station.joints.model_kind import describes_structure
+from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
@@ -174,10 +183,7 @@ def _examine_named(
             f"'{model}' is a model file: give it alone, with the sessions it is about "
             "in its [gap] table, or as --model beside them"
         )
-    bench = read_toml(model, BenchModel)
-    names = bench.gap.sessions
-    if bench.record is not None and bench.record.file is not None:
-        names = (*names, bench.record.file)
+    names = _named_data(model)
     if not names:
         raise UsageError(
             f"'{model}' names no data; add sessions = ['session.h5'] to its [gap] "
@@ -185,6 +191,16 @@ def _examine_named(
         )
     files = [str(model.parent / name) for name in names]
     return examine(files, replace(wanted, model=model), progress=progress)
+
+
+def _named_data(model: Path) -> tuple[str, ...]:
+    """Return the sessions, or the record, that a model file names."""
+    if describes_structure(model):
+        return gap_table(read_toml(model, StructureModel)).sessions
+    bench = read_toml(model, BenchModel)
+    if bench.record is not None and bench.record.file is not None:
+        return (*bench.gap.sessions, bench.record.file)
+    return bench.gap.sessions
 
 
 def _examine_levels(
@@ -293,11 +309,12 @@ def _examine_hits(
             f"'{paths[0]}' brings its own torques and is given alone; leave --preload "
             "and other files out"
         )
-    if wanted.curves or wanted.extended:
-        raise UsageError(
-            "--curves, --effects and --with do not apply to bolted bodies; leave them "
-            "out"
+    _refuse_on_bodies(wanted)
+    if wanted.model is not None and describes_structure(wanted.model):
+        found, remarks, plan = examine_meshed(
+            paths[0], wanted.model, without=wanted.without, progress=progress
         )
+        return Examined(paths[0].stem, found, remarks=remarks, plan=plan)
     nominal = wanted.model or nominal_beside(paths[0])
     found, remarks = examine_structure(
         paths[0], nominal, without=wanted.without, progress=progress
@@ -336,7 +353,8 @@ def _examine_record(
 def _examine_sessions(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
-    nominal = nominal_parameters(_model(paths[0], wanted))
+    bolted = wanted.model is not None and describes_structure(wanted.model)
+    nominal = None if bolted else nominal_parameters(_model(paths[0], wanted))
     sessions = [read_session(path) for path in paths]
     sessions.sort(key=lambda session: session.created)
     remarks: list[str] = []
@@ -348,6 +366,10 @@ def _examine_sessions(
         names = ", ".join(path.name for path in paths)
         raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
     title = ", ".join(path.stem for path in paths)
+    simulated = any(session.simulated for session in sessions)
+    if nominal is None:
+        done = _examine_bolted(title, recordings, wanted, progress)
+        return replace(done, remarks=(*remarks, *done.remarks), simulated=simulated)
     curves = None
     if wanted.curves:
         curves = curves_of_recordings(
@@ -362,12 +384,31 @@ def _examine_sessions(
         curves=curves,
         progress=progress,
     )
-    return Examined(
+    return Examined(title, found, remarks=(*remarks, *left_out), simulated=simulated)
+
+
+def _examine_bolted(
+    title: str, recordings: list[Recording], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine hits of sessions with a model of meshed bodies."""
+    _refuse_on_bodies(wanted)
+    found, remarks, plan = examine_recordings(
         title,
-        found,
-        remarks=(*remarks, *left_out),
-        simulated=any(session.simulated for session in sessions),
+        recordings,
+        wanted.model or Path(),
+        without=wanted.without,
+        progress=progress,
     )
+    return Examined(title, found, remarks=remarks, plan=plan)
+
+
+def _refuse_on_bodies(wanted: GapRequest) -> None:
+    """Raise `UsageError` for options that do not apply to bolted bodies."""
+    if wanted.curves or wanted.extended:
+        raise UsageError(
+            "--curves, --effects and --with do not apply to bolted bodies; leave them "
+            "out"
+        )
 
 
 def _refuse_curves(wanted: GapRequest) -> None:

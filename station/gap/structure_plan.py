@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Picture of a bolted structure with the sites that were named."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from pathlib import Path
 
@@ -70,6 +70,7 @@ class StructurePlan:
         positions: [m], shape (n_places, 3).
         boxes: corners of each body [m], shape (n_bodies, 8, 3).
         bodies: names of the bodies.
+        joints: bolts of each joint, where there are several.
     """
 
     names: tuple[str, ...]
@@ -77,6 +78,7 @@ class StructurePlan:
     positions: FloatArray
     boxes: FloatArray
     bodies: tuple[str, ...]
+    joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -122,15 +124,15 @@ def marked_places(plan: StructurePlan, sites: Sequence[str]) -> list[int]:
     for site in sites:
         kind, _, name = site.partition(":")
         name = name.removesuffix(" normal")
-        every = kind in ("bolts", "joint")
+        joint = plan.joints.get(name, ()) if kind == "joint" else ()
+        every = kind in ("bolts", "joint") and not joint
         wanted = {site, f"{kind}:{name}"}
         if kind == "point":
-            *_, number = name.split(" ")
-            wanted |= {f"channel:{name}"}
-            wanted |= {f"bolt:{number}"} if " bolt " in name else set()
-            wanted |= {f"foot:{number}"} if name.startswith("foot ") else set()
+            _, _, bolt = name.partition(" bolt ")
+            wanted |= {f"channel:{name}", f"bolt:{bolt}"}
+            wanted |= {f"foot:{name.removeprefix('foot ')}"}
         for k, one in enumerate(plan.names):
-            if one in wanted or (every and one.startswith("bolt:")):
+            if one in wanted or one in joint or (every and one.startswith("bolt:")):
                 found.append(k)
     return sorted(set(found))
 
@@ -159,8 +161,8 @@ def structure_section(plan: StructurePlan, found: Diagnosis) -> Section:
     """
     sites = [effect.site for effect in found.effects]
     caption = (
-        "The structure in oblique view (x to the right, z up). Bolts and feet count "
-        "from 0, in the order of the nominal parameters."
+        "The structure in oblique view (x to the right, z up). Feet, and bolts without "
+        "a name, count from 0, in the order of the nominal parameters."
     )
     if sites:
         named = ", ".join(

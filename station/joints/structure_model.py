@@ -33,6 +33,7 @@ from jointbench.analysis.structures.meshes.polygons import Patch, disc, rectangl
 from jointbench.analysis.structures.meshes.solid_shapes import SolidShape, mesh_shapes
 from jointbench.analysis.structures.reduction.mounted_sensors import MountedSensor
 from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.joints.gap_table import StructureGapTable
 from jointbench.station.joints.pattern_file import read_pattern
 from jointbench.station.joints.pressure_table import PressureTable
 from jointbench.station.joints.shape_table import PatchTable, ShapeTable
@@ -66,6 +67,7 @@ class StructureModel(StrictTable):
     contact: TheoryTable | None = None
     bolted_joint: BoltedLinkTable | None = None
     pressure: PressureTable | None = None
+    gap: StructureGapTable | None = None
 
     @model_validator(mode="after")
     def _names_exist(self) -> "StructureModel":

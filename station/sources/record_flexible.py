@@ -18,6 +18,8 @@ from jointbench.simulators.flexible.flexible_url import (
     bench_of_flexible_url,
     flexible_query,
 )
+from jointbench.simulators.flexible.mesh_model import mesh_model_text
+from jointbench.simulators.flexible.physical_bodies import MESHED_EFFECTS
 from jointbench.simulators.flexible.write_flexible import (
     CAMPAIGN_SCHEMA,
     flexible_truth,
@@ -33,7 +35,7 @@ from jointbench.station.screen.terminal import (
     write_json,
 )
 
-NOMINAL, TRUTH = ".sheet.json", ".truth.json"
+NOMINAL, TRUTH, MODEL = ".sheet.json", ".truth.json", ".model.toml"
 
 
 def run_record_flexible(
@@ -43,7 +45,8 @@ def run_record_flexible(
 
     Args:
         url: of the bench.
-        out: file of the raw hits; nominal values and truth go beside it as JSON.
+        out: file of the raw hits; nominal values and truth go beside it as JSON, and
+            the bench as a model of meshed bodies (TOML).
         overwrite: replace earlier files.
         json_target: where the JSON goes.
 
@@ -52,8 +55,9 @@ def run_record_flexible(
     """
     check_session_name(out)
     nominal, truth = out.with_suffix(NOMINAL), out.with_suffix(TRUTH)
+    model = out.with_suffix(MODEL)
     check_outputs([], [nominal, truth, json_target])
-    for path in (out, nominal, truth):
+    for path in (out, nominal, truth, model):
         if path.exists() and not overwrite:
             raise UsageError(f"'{path}' is there already; add --force to overwrite it")
     _require_campaign(out)
@@ -63,6 +67,7 @@ def run_record_flexible(
     with whole_file(out) as part:
         write_hits(campaign, part)
     write_text(nominal, json.dumps(known_bench(bench), indent=1) + "\n")
+    write_text(model, mesh_model_text(bench))
     found = flexible_truth(bench) | {"margins": _margins(bench, url)}
     write_text(truth, json.dumps(found, indent=1) + "\n")
     _show(campaign, out, json_target)
@@ -72,7 +77,9 @@ def _margins(bench: FlexibleBench, url: str) -> dict[str, dict[str, float]]:
     """Return the margin of each effect by its name, where the URL asks for them."""
     if not flexible_query(url).margin:
         return {}
-    return {e.name: asdict(flexible_margin(bench, e.name)) for e in bench.effects}
+    # That of a thickness would need the bench without it.
+    names = [e.name for e in bench.effects if e.name not in MESHED_EFFECTS]
+    return {name: asdict(flexible_margin(bench, name)) for name in names}
 
 
 def _require_campaign(path: Path) -> None:
@@ -104,7 +111,8 @@ def _show(campaign: FlexibleCampaign, out: Path, json_target: str | None) -> Non
     ]
     screen = lasting_console(json_target)
     screen.print(table(f"{out}", ("campaign", "content"), rows))
-    for words, suffix in (("nominal values", NOMINAL), ("truth", TRUTH)):
+    files = ("nominal values", NOMINAL), ("meshed model", MODEL), ("truth", TRUTH)
+    for words, suffix in files:
         screen.print(f"{words}: {out.with_suffix(suffix)}", soft_wrap=True)
     screen.print(f"\nnext: jointbench gap {out}", soft_wrap=True)
     write_json(
@@ -112,6 +120,7 @@ def _show(campaign: FlexibleCampaign, out: Path, json_target: str | None) -> Non
         {
             "hits": str(out),
             "nominal": str(out.with_suffix(NOMINAL)),
+            "model": str(out.with_suffix(MODEL)),
             "truth": str(out.with_suffix(TRUTH)),
             "records": len(bench.hits),
             "levels_n": list(bench.levels),

@@ -21,7 +21,6 @@ from jointbench.analysis.gap.structure_response.hit_campaign import (
     HitRecords,
     RejectedHit,
 )
-from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,12 +65,12 @@ class RawHits:
     hits: tuple[RawHit, ...]
 
 
-def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
+def filter_hits(raw: RawHits, highest: float) -> HitRecords:
     """Leave out bad hits, cut out the contacts, and filter force and responses alike.
 
     Args:
         raw: records as stored.
-        bodies: whose highest mode bounds the band.
+        highest: frequency up to which the model holds [Hz]; it bounds the band.
 
     Raises:
         BadData: fewer than two hits can be used.
@@ -94,7 +93,7 @@ def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
             f"{raw.where} has {len(good)} hits that can be used, 2 or more are "
             f"required; {rejected[0].reason if rejected else 'record more hits'}"
         )
-    found = _filtered(raw, bodies, good, tuple(rejected))
+    found = _filtered(raw, highest, good, tuple(rejected))
     samples = raw.hits[0].counts.shape[1]
     kept = np.arange(samples - found.raw_force.shape[1], samples, found.filter.step)
     gain = float(np.linalg.norm(found.filter.kernel))
@@ -103,7 +102,7 @@ def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
 
 def _filtered(
     raw: RawHits,
-    bodies: JointedBodies,
+    highest: float,
     good: list[tuple[RawHit, QuietHit]],
     rejected: tuple[RejectedHit, ...],
 ) -> HitRecords:
@@ -111,7 +110,6 @@ def _filtered(
     found = [contact_samples(h.values[0], float(h.noise[0])) for _, h in good]
     contacts = np.stack(found)
     force = np.where(contacts, force, 0.0)
-    highest = HITS.band_of_table * float(bodies.omega.max()) / (2 * np.pi)
     band = min(band_of(force, raw.sample_rate), highest)
     decimate = make_filter(band, raw.sample_rate)
     first = int(np.flatnonzero(contacts.any(axis=0))[0])

@@ -11,11 +11,18 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import shown, visible
 from jointbench.analysis.gap.intake.intake_settings import HITS
+from jointbench.analysis.gap.intake.mass_places import (
+    PlacedSensor,
+    Vector,
+    motion_across,
+    numbered_places,
+    point_places,
+    sensor_places,
+)
 from jointbench.analysis.gap.intake.typed_hdf5 import finite_array, require_group
 from jointbench.analysis.gap.structure_response.jointed_bodies import (
     HitPoint,
     JointedBodies,
-    MassPlace,
 )
 from jointbench.analysis.gap.structure_response.surface_around import (
     SurfaceAround,
@@ -23,9 +30,6 @@ from jointbench.analysis.gap.structure_response.surface_around import (
 )
 
 BODIES = ("bottom", "top")
-_Vector = tuple[float, ...] | None
-_Sensor = tuple[str, int, _Vector, _Vector]
-"""Channel, index of its body, position [m], direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +76,7 @@ class _Table:
         rows[..., self.before : self.before + count] = own
         return rows
 
-    def around(self, place: _Vector) -> SurfaceAround | None:
+    def around(self, place: Vector) -> SurfaceAround | None:
         """Return the surface around a place, if the table lists its nodes."""
         if "nodes_m" not in self.group or place is None:
             return None
@@ -101,7 +105,7 @@ class _Table:
 def read_bodies(
     where: str,
     file: h5py.File,
-    sensors: Sequence[_Sensor],
+    sensors: Sequence[PlacedSensor],
     points: Mapping[str, PlannedPoint],
     rigid: BoolArray,
 ) -> JointedBodies:
@@ -147,17 +151,14 @@ def read_bodies(
         sensors=np.array(rows),
         points=hit_points,
         places=(
-            *_places("bottom bolt", bolts[0]),
-            *_places("top bolt", bolts[1]),
-            *_places("foot", feet),
-            *(
-                MassPlace(p.name, p.rows, np.abs(p.direction)[None] @ p.rows)
-                for p in hit_points
-            ),
-            *_sensor_places(sensors, rows, sites),
+            *numbered_places("bottom bolt", bolts[0]),
+            *numbered_places("top bolt", bolts[1]),
+            *numbered_places("foot", feet),
+            *point_places(hit_points),
+            *sensor_places(sensors, rows, sites),
         ),
         rigid=(bool(rigid[0]), bool(rigid[1]), bool(rigid[2])),
-        across=_across(sensors, sites, total=rows[0].size),
+        across=motion_across(sensors, sites, total=rows[0].size),
         directions=np.array(directions) if len(directions) == len(sensors) else _NONE,
         around_channels=_known(
             (name, tables[body].around(place))
@@ -179,7 +180,7 @@ def _known(
 
 
 def _sites(
-    tables: Sequence[_Table], sensors: Sequence[_Sensor]
+    tables: Sequence[_Table], sensors: Sequence[PlacedSensor]
 ) -> list[FloatArray] | None:
     """Return the motion at each sensor in three directions; None if not listed."""
     groups = [table.group.get("phi_site") for table in tables]
@@ -190,19 +191,6 @@ def _sites(
             return None
         found.append(tables[body].rows(group, name, (3,)))
     return found
-
-
-def _across(
-    sensors: Sequence[_Sensor], sites: Sequence[FloatArray] | None, *, total: int
-) -> FloatArray:
-    """Return the motion along the two axes most at right angles to each sensor."""
-    if sites is None or any(direction is None for *_, direction in sensors):
-        return np.zeros((0, 2, total))
-    found = []
-    for (*_, direction), site in zip(sensors, sites, strict=True):
-        along = np.abs(np.asarray(direction, dtype=float))
-        found.append(site[np.sort(np.argsort(along)[:2])])
-    return np.array(found)
 
 
 def _tables(where: str, file: h5py.File) -> tuple[_Table, ...]:
@@ -250,29 +238,3 @@ def _hit_point(
     return HitPoint(
         name, normal, across, rows, np.einsum("ad,dcn->acn", across, gradient)
     )
-
-
-def _places(name: str, rows: FloatArray) -> list[MassPlace]:
-    none = np.zeros((0, rows.shape[2]))
-    return [MassPlace(f"{name} {k}", one, none) for k, one in enumerate(rows)]
-
-
-def _sensor_places(
-    sensors: Sequence[_Sensor],
-    rows: Sequence[FloatArray],
-    sites: Sequence[FloatArray] | None,
-) -> list[MassPlace]:
-    """Return a place for each sensor position, with all directions known there."""
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for k, (name, body, position, _) in enumerate(sensors):
-        groups.setdefault((body, position or name), []).append(k)
-    found = []
-    for own in groups.values():
-        measured = np.array([rows[k] for k in own])
-        whole = measured if sites is None else sites[own[0]]
-        found.append(MassPlace(sensors[own[0]][0], whole, measured[:1]))
-        found += [
-            MassPlace(sensors[k][0], np.zeros_like(whole[:0]), rows[k][None])
-            for k in own[1:]
-        ]
-    return found

@@ -2,7 +2,8 @@
 """Read `campaign/1` files: raw hits on bolted bodies, with modes of the free bodies."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -68,14 +69,42 @@ def read_hit_campaign(
         HostileFile: the file claims more records or samples than a campaign can have.
         BadData: a sample is not finite, or too few hits can be used.
     """
-    with open_guarded(path) as file:
-        try:
-            return _campaign(path, file, nominal, points)
-        except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
-            raise FormatError(
-                f"{named(path)} cannot be read as {HIT_SCHEMA} ({shown(error)}); "
-                "give a complete campaign file"
-            ) from error
+    with open_guarded(path) as file, _complete(path):
+        return _campaign(path, file, nominal, points)
+
+
+def read_raw_hits(
+    path: Path, points: Sequence[str]
+) -> tuple[RawHits, tuple[RawChannel, ...]]:
+    """Read the raw hits of a campaign, without the modal tables.
+
+    Args:
+        path: HDF5 file of schema ``campaign/1``.
+        points: names of the hammer points, in the order of the model.
+
+    Returns:
+        The hits, and the rows of their data: the hammer first.
+
+    Raises:
+        FormatError: the file has another format, or a part is missing or malformed.
+        HostileFile: the file claims more records or samples than a campaign can have.
+        BadData: a sample is not finite.
+    """
+    with open_guarded(path) as file, _complete(path):
+        channels = _channels(named(path), file)
+        return _raw_hits(named(path), file, channels, tuple(points)), channels
+
+
+@contextmanager
+def _complete(path: Path) -> Iterator[None]:
+    """Turn what a damaged file causes into one line that names it."""
+    try:
+        yield
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise FormatError(
+            f"{named(path)} cannot be read as {HIT_SCHEMA} ({shown(error)}); "
+            "give a complete campaign file"
+        ) from error
 
 
 def _campaign(
@@ -96,7 +125,8 @@ def _campaign(
     sensors = [(c.name, c.body, c.position, c.direction) for c in channels[1:]]
     rigid = np.isinf(nominal.stiffness)
     bodies = read_bodies(where, file, sensors, points, rigid)
-    hits = filter_hits(raw, bodies)
+    highest = HITS.band_of_table * float(bodies.omega.max()) / (2 * np.pi)
+    hits = filter_hits(raw, highest)
     return HitCampaign(path.stem, bodies, nominal, hits)
 
 

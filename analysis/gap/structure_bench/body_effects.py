@@ -16,6 +16,7 @@ from jointbench.analysis.gap.structure_bench.place_sites import (
     each_body,
     each_direction,
     each_foot,
+    each_meshed_body,
     each_place,
     place_and_direction,
     place_of,
@@ -34,6 +35,13 @@ def _stiffen_body(
     modulus = state.modulus.copy()
     modulus[campaign.bodies.bodies.index(site.name)] *= 1.0 + values[0]
     return replace(state, modulus=modulus)
+
+
+def _thicken_body(
+    state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
+) -> JointState:
+    bodies = campaign.bodies.thickness[site.name](1.0 + float(values[0]))
+    return replace(state, bodies=bodies, tuning=np.ones(bodies.omega.size))
 
 
 def _hold_foot(
@@ -131,6 +139,26 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         each_body,
         _stiffen_body,
+    ),
+    StructureEffect(
+        Effect(
+            "thickness",
+            "stiffness",
+            (
+                Parameter(
+                    "change", "-", lower=-0.25, upper=0.3, off=0.0, far=(-0.1, 0.1)
+                ),
+            ),
+            "Leissa 1969, NASA SP-160, ch. 1: bending by t^3, stretching and mass by t",
+            separates={
+                "modulus": "weigh the body: its mass grows with its thickness, and "
+                "modes in its plane keep their frequencies"
+            },
+            report=_body_factor,
+        ),
+        each_meshed_body,
+        _thicken_body,
+        alone=True,
     ),
     StructureEffect(
         Effect(

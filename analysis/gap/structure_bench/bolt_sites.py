@@ -22,8 +22,8 @@ def where_rigid(name: str, directions: tuple[int, ...]) -> Sites:
 
 def each_bolt(campaign: HitCampaign) -> tuple[Site, ...]:
     """Return every bolt."""
-    count = campaign.bodies.bolts.shape[0]
-    return tuple(Site("bolt", f"{k}") for k in range(count))
+    bodies = campaign.bodies
+    return tuple(Site("bolt", bodies.bolt_name(k)) for k in range(len(bodies.bolts)))
 
 
 def each_sprung_bolt(campaign: HitCampaign) -> tuple[Site, ...]:
@@ -42,18 +42,35 @@ def with_torques(campaign: HitCampaign) -> tuple[Site, ...]:
 
 
 def sliding_bolts(campaign: HitCampaign) -> tuple[Site, ...]:
-    """Return all bolts together, if a tangential direction moves."""
-    return () if all(campaign.bodies.rigid[:NORMAL]) else all_bolts(campaign)
+    """Return all bolts together and each joint, if a tangential direction moves."""
+    if all(campaign.bodies.rigid[:NORMAL]):
+        return ()
+    joints = tuple(Site("joint", name) for name in campaign.bodies.joints)
+    return (*all_bolts(campaign), *joints)
 
 
 def each_sliding_bolt(campaign: HitCampaign) -> tuple[Site, ...]:
-    """Return all bolts together and every single one, if a tangential one moves."""
-    rigid = all(campaign.bodies.rigid[:NORMAL])
-    return () if rigid else (*all_bolts(campaign), *each_bolt(campaign))
+    """Return `sliding_bolts` and every single bolt that is no joint of its own."""
+    alone = [own for own in campaign.bodies.joints.values() if len(own) == 1]
+    bolts = [site for k, site in enumerate(each_bolt(campaign)) if (k,) not in alone]
+    together = sliding_bolts(campaign)
+    return (*together, *bolts) if together else ()
 
 
-def tangential_ports(state: JointState, bolts: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the compliant joint freedoms across bolts."""
+def _bolts_at(campaign: HitCampaign, site: Site) -> tuple[int, ...]:
+    """Return the bolts of a site: all, those of a joint, or one."""
+    if site.kind == "bolts":
+        return tuple(range(len(campaign.bodies.bolts)))
+    return campaign.bodies.bolts_of(site.name)
+
+
+def tangential_ports(
+    campaign: HitCampaign, state: JointState, site: Site
+) -> tuple[int, ...]:
+    """Return the compliant joint freedoms across the bolts of a site."""
     return tuple(
-        3 * k + d for k in bolts for d in range(NORMAL) if state.compliance[d] > 0.0
+        3 * k + d
+        for k in _bolts_at(campaign, site)
+        for d in range(NORMAL)
+        if state.compliance[d] > 0.0
     )

@@ -60,7 +60,7 @@ def _loosen(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
     bolt = state.bolt.copy()
-    bolt[int(site.name)] *= np.exp(-values[0])
+    bolt[campaign.bodies.bolt_number(site.name)] *= np.exp(-values[0])
     return replace(state, bolt=bolt)
 
 

@@ -64,7 +64,7 @@ def _scales(campaign: HitCampaign) -> dict[str, float]:
     """Return the sizes that scale starts and bounds of effects."""
     bodies, nominal, hits = campaign.bodies, campaign.nominal, campaign.hits
     # The rigid motions of a mass-normalised table: phi = 1 / sqrt(mass) along an axis.
-    rigid = bodies.omega < STRUCTURE.rigid_share * bodies.omega.max()
+    rigid = bodies.omega < STRUCTURE.rigid_share * 2.0 * np.pi * hits.band
     motion = np.sum(bodies.points[0].rows[:, rigid] ** 2, axis=1)
     mass = 1.0 / float(np.min(motion))
     known = nominal.stiffness[np.isfinite(nominal.stiffness)]

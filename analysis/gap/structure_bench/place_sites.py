@@ -18,6 +18,11 @@ def each_body(campaign: HitCampaign) -> tuple[Site, ...]:
     return tuple(Site("body", name) for name in campaign.bodies.bodies)
 
 
+def each_meshed_body(campaign: HitCampaign) -> tuple[Site, ...]:
+    """Return every body whose mesh shows what another thickness would change."""
+    return tuple(Site("body", name) for name in campaign.bodies.thickness)
+
+
 def each_place(campaign: HitCampaign) -> tuple[Site, ...]:
     """Return every point at which something may sit, free in all known directions."""
     places = campaign.bodies.places

@@ -205,7 +205,10 @@ class StructureBench:
         integrate both for every coordinate.
         """
         names = {e.effect.name for e in self.entries if e.by_frequency}
+        lonely = {e.effect.name for e in self.entries if e.alone}
         every = (candidate, *fitted)
+        if fitted and any(c.effect.name in lonely for c in every):
+            return False
         apart = any(c.effect.name in names for c in every) and self.nonlinear(every)
         two = self.nonlinear((candidate,)) and self.nonlinear(fitted)
         return may_join(candidate, fitted) and not apart and not two

@@ -40,7 +40,7 @@ def _slide(
 ) -> JointState:
     share, largest, power, preload, onset, gradual = (float(v) for v in values)
     slips, weights = iwan_sliders(largest, power, onset)
-    ports = tangential_ports(state, tuple(range(state.bolt.size)))
+    ports = tangential_ports(campaign, state, site)
     return _with_friction(state, ports, share, (slips, weights, gradual), preload)
 
 
@@ -48,8 +48,7 @@ def _slip(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
     share, slip, preload, gradual = (float(v) for v in values)
-    bolts = tuple(range(state.bolt.size)) if site.name == "all" else (int(site.name),)
-    ports = tangential_ports(state, bolts)
+    ports = tangential_ports(campaign, state, site)
     sliders = np.array([slip]), np.ones(1), gradual
     return _with_friction(state, ports, share, sliders, preload)
 
@@ -85,7 +84,7 @@ def _at_bolt(kind: LawForm) -> Change:
     def change(
         state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
     ) -> JointState:
-        port = 3 * int(site.name) + NORMAL
+        port = 3 * campaign.bodies.bolt_number(site.name) + NORMAL
         gap = float(values[1]) if values.size > 1 else 0.0
         laws = PortLaws((port,), float(values[0]), kind=kind, gap=gap)
         return replace(state, laws=(*state.laws, laws))

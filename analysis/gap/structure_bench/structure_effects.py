@@ -30,6 +30,8 @@ class StructureEffect:
             be fitted beside it.
         aimed: True if it moves the mark of a point: fits also start at the mean place
             where the hits of the point landed.
+        alone: True if it changes the modes, so that no other effect is fitted beside
+            it.
     """
 
     effect: Effect
@@ -39,6 +41,7 @@ class StructureEffect:
     always: bool = False
     by_frequency: bool = False
     aimed: bool = False
+    alone: bool = False
 
 
 def one_parameter(

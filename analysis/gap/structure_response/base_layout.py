@@ -118,7 +118,7 @@ def base_layout(
 def _tuned(bodies: JointedBodies, band: float) -> tuple[tuple[int, str], ...]:
     """Return the elastic modes up to some way above the band, with their names."""
     highest = 2.0 * np.pi * band * STRUCTURE.tuned_band
-    elastic = bodies.omega > STRUCTURE.rigid_share * bodies.omega.max()
+    elastic = bodies.omega > STRUCTURE.rigid_share * 2.0 * np.pi * band
     found = []
     for mode in np.flatnonzero(elastic & (bodies.omega < highest)):
         body = int(bodies.body[mode])

@@ -47,7 +47,7 @@ def closed_modes(
         raise ValueError("a rocking compliance is not integrated in time")
     m, c, k = _matrices(bodies, state, torque)
     held = [d for d in range(3) if state.compliance[d] == 0.0]
-    rows = bodies.bolts[:, held].reshape(-1, bodies.omega.size)
+    rows = bodies.bolt_rows[np.isin(bodies.row_directions, held)]
     free = _null_space(rows)
     m, c, k = (free.T @ x @ free for x in (m, c, k))
     n = len(m)
@@ -71,13 +71,13 @@ def _matrices(
     m = np.diag(mass)
     c = np.diag(2.0 * state.loss[bodies.body] * omega * mass)
     k = np.diag(omega**2 * mass)
-    for i, bolt in enumerate(bodies.bolts):
-        factor = state.bolt[i] * torque
-        for d in range(3):
-            if state.compliance[d] > 0.0:
-                square = factor * np.outer(bolt[d], bolt[d])
-                k += square / state.compliance[d]
-                c += square * state.damping[d]
+    for d in range(3):
+        if state.compliance[d] > 0.0:
+            own = bodies.row_directions == d
+            along = bodies.bolt_rows[own]
+            square = ((state.bolt * torque)[bodies.row_bolts[own]] * along.T) @ along
+            k += square / state.compliance[d]
+            c += square * state.damping[d]
     feet = bodies.feet.reshape(-1, omega.size)
     k += (state.foot[0] * np.repeat(state.foot_factor, 3) * feet.T) @ feet
     c += state.foot[1] * feet.T @ feet

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.structure_response.base_layout import (
     BaseLayout,
     BaseName,
@@ -96,10 +96,10 @@ def joint_compliances(
     """
     a = state.compliance
     one = a / (1.0 + a * state.damping * s[:, None])
-    bolts = one[:, None, :] / (state.bolt * torque)[:, None]
+    bolts = one[:, bodies.row_directions] / (state.bolt * torque)[bodies.row_bolts]
     stiffness = np.repeat(state.foot[0] * state.foot_factor, 3)
     feet = 1.0 / (stiffness + state.foot[1] * s[:, None])
-    return np.concatenate([bolts.reshape(s.size, -1), feet], axis=1)
+    return np.concatenate([bolts, feet], axis=1)
 
 
 def _sums_over_modes(one: FloatArray, two: FloatArray, d: ComplexArray) -> ComplexArray:
@@ -293,7 +293,7 @@ def _modal_slopes(
     return slopes
 
 
-_Change = tuple[slice, ComplexArray]
+_Change = tuple[IntArray, ComplexArray]
 """Joint freedoms, and the slope of their compliance, shape (n_lines, n_freedoms)."""
 
 
@@ -301,17 +301,18 @@ def _compliance_slopes(
     found: Closure, bodies: JointedBodies, state: JointState, layout: BaseLayout
 ) -> dict[str, _Change]:
     """Return the slope of the joint compliances by each coordinate."""
-    count, a, s = bodies.bolts.shape[0], state.compliance, found.s[:, None]
-    factor = (state.bolt * found.torque)[None, :]
+    bolts, along = bodies.row_bolts, bodies.row_directions
+    a, s = state.compliance, found.s[:, None]
+    factor = (state.bolt * found.torque)[bolts]
     slopes: dict[str, _Change] = {}
     yielding = 1.0 + a * state.damping * s
     by_stiffness = -a / yielding**2
     by_damping = -(a**2) * state.damping * s / yielding**2
     for direction in layout.compliant:
-        joints = slice(direction, 3 * count, 3)
-        change = by_stiffness[:, direction, None] / factor
+        joints = np.flatnonzero(along == direction)
+        change = by_stiffness[:, direction, None] / factor[joints]
         slopes[stiffness_name(direction)] = joints, change
-    every = slice(0, 3 * count)
+    every = np.arange(bolts.size)
     normal, tangential = by_damping.copy(), by_damping.copy()
     normal[:, :NORMAL], tangential[:, NORMAL] = 0.0, 0.0
     by_name = {
@@ -319,13 +320,11 @@ def _compliance_slopes(
         BaseName.NORMAL_DAMPING: normal,
     }
     for name, one in by_name.items():
-        change = one[:, None, :] / factor[:, :, None]
-        slopes[name] = every, change.reshape(s.size, -1)
-    whole = (a / yielding)[:, None, :] / factor[:, :, None]
-    for k in range(count - 1):
-        change = -whole * layout.contrasts[:, k][None, :, None]
-        slopes[bolt_name(k + 1)] = every, change.reshape(s.size, -1)
-    feet = slice(3 * count, None)
+        slopes[name] = every, one[:, along] / factor
+    whole = (a / yielding)[:, along] / factor
+    for k in range(layout.contrasts.shape[1]):
+        slopes[bolt_name(k + 1)] = every, -whole * layout.contrasts[bolts, k]
+    feet = bolts.size + np.arange(3 * len(bodies.feet))
     stiffness, damping = np.repeat(state.foot[0] * state.foot_factor, 3), state.foot[1]
     foot = -1.0 / (stiffness + damping * s) ** 2
     slopes[BaseName.FOOT] = feet, foot * stiffness

@@ -2,6 +2,7 @@
 """Filtered hits on bolted bodies, and the hits that were left out."""
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -43,6 +44,7 @@ class HitRecords:
         raw_force: unfiltered force [N] from the first sample on, (n_records, n_raw).
         filter: that both have passed.
         rejected: hits left out.
+        clamped_by: quantity and unit of `torque`: that of the bolts, or a preload [N].
         hum_left: what may be left of offset and mains hum in a record, in directions of
             unit sd over the noise of the channel, shape (n_directions, n_samples).
     """
@@ -60,6 +62,7 @@ class HitRecords:
     raw_force: FloatArray
     filter: CommonFilter
     rejected: tuple[RejectedHit, ...] = ()
+    clamped_by: Literal["torque", "preload"] = "torque"
     hum_left: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
@@ -91,11 +94,12 @@ def record_blocks(campaign: HitCampaign) -> Blocks:
     """Return the records of a campaign as groups of rows."""
     hits = campaign.hits
     shape = hits.response.shape
+    unit = "N m" if hits.clamped_by == "torque" else "N"
     labels = tuple(
         {
             "level": f"{level:g} N",
             "hit point": campaign.bodies.points[point].name,
-            "torque": f"{torque:g} N m",
+            hits.clamped_by: f"{torque:g} {unit}",
             "order": f"{k}",
         }
         for k, (level, point, torque) in enumerate(

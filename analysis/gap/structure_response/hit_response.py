@@ -108,7 +108,7 @@ class HitModel:
             layout: base coordinates.
             changes: slopes of the forces of the laws by each coordinate.
         """
-        bodies = self.campaign.bodies
+        bodies = self.state.bodies_of(self.campaign.bodies)
         slopes = [
             response_slopes(one.closure, bodies, one.state, layout)
             for one in self.closures
@@ -201,7 +201,7 @@ def hit_model(
         weights: force columns of each record, shape (n_records, 9).
         fine: True for the time integration of what is judged, not of fits.
     """
-    bodies = campaign.bodies
+    bodies = state.bodies_of(campaign.bodies)
     columns = [point_columns(p) for p in state.points_of(bodies)]
     if state.laws:
         rows = bodies.bolts.reshape(-1, bodies.omega.size)
@@ -252,7 +252,7 @@ def law_forces(
     Returns:
         Transformed forces across the ports, shape (n_records, n_ports, n_lines).
     """
-    hits, bodies = campaign.hits, campaign.bodies
+    hits, bodies = campaign.hits, state.bodies_of(campaign.bodies)
     step = hits.filter.step
     friction = all(law.kind == LawForm.FRICTION for law in state.laws)
     parts = (STRUCTURE.slider_steps if friction else STRUCTURE.law_steps)[fine]

@@ -95,6 +95,7 @@ class JointState:
         gain: relative gain of each channel less 1 [-], shape (n_channels,).
         lag: of each channel [s], shape (n_channels,).
         laws: nonlinear laws at the bolts.
+        bodies: in the place of those of the campaign; None for these.
     """
 
     modulus: FloatArray
@@ -116,6 +117,7 @@ class JointState:
     cables: tuple[CableResonance, ...] = ()
     attached: tuple[Attached, ...] = ()
     laws: tuple[PortLaws, ...] = ()
+    bodies: JointedBodies | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -126,6 +128,10 @@ class JointState:
         """Return the natural angular frequencies of the free modes [rad/s]."""
         root = np.sqrt(self.modulus)[bodies.body]
         return np.asarray(bodies.omega * root * self.tuning)
+
+    def bodies_of(self, bodies: JointedBodies) -> JointedBodies:
+        """Return the bodies as they are in this state."""
+        return bodies if self.bodies is None else self.bodies
 
     def sensors_of(self, bodies: JointedBodies) -> FloatArray:
         """Return the motion along each sensor, shape (n_channels, n_modes)."""

@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Two bolted bodies in modal form: rows of bolts, feet, sensors and hit points."""
+"""Bolted bodies in modal form: rows of bolts, feet, sensors and hit points.
 
-from collections.abc import Mapping
+A bolt may stand for a bolted area with many nodes: its rows are the mean relative
+motion there, and `spread` holds patterns in which it changes across the area. They are
+orthonormal over it, so springs that are spread evenly act on each of them with the
+stiffness of the whole.
+"""
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -93,6 +99,13 @@ class JointedBodies:
             not stated.
         around_channels: surface around each sensor that the table shows, by channel.
         around_points: the same around hammer points, by point.
+        spread: relative motion beside the mean one of a bolted area, in orthonormal
+            patterns, shape (n_spread, n_modes); none for bolts at points.
+        spread_of: bolt and direction of each of them, shape (n_spread, 2).
+        joints: bolts of each joint, by its name, where there are several joints.
+        bolt_names: of the bolts; empty for their numbers.
+        thickness: the bodies with one of them thicker by a factor, by its name; none
+            for modal tables, which do not show what another thickness would change.
     """
 
     bodies: tuple[str, ...]
@@ -109,17 +122,90 @@ class JointedBodies:
     directions: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     around_channels: Mapping[str, SurfaceAround] = field(default_factory=dict)
     around_points: Mapping[str, SurfaceAround] = field(default_factory=dict)
+    spread: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    spread_of: IntArray = field(default_factory=lambda: np.zeros((0, 2), np.int64))
+    joints: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    bolt_names: tuple[str, ...] = ()
+    thickness: Mapping[str, Callable[[float], "JointedBodies"]] = field(
+        default_factory=dict
+    )
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "body", "omega", "bolts", "feet", "sensors", "across")
-        freeze(self, "directions")
+        freeze(self, "directions", "spread", "spread_of")
+
+    @property
+    def bolt_rows(self) -> FloatArray:
+        """Rows that springs of bolts act on: of bolts, then `spread`, (n, n_modes)."""
+        n = self.omega.size
+        return np.concatenate([self.bolts.reshape(-1, n), self.spread.reshape(-1, n)])
+
+    @property
+    def row_bolts(self) -> IntArray:
+        """Bolt of each of these rows, shape (n,)."""
+        own = np.repeat(np.arange(len(self.bolts)), len(DIRECTIONS))
+        return np.concatenate([own, self.spread_of[:, 0]])
+
+    @property
+    def row_directions(self) -> IntArray:
+        """Direction of each of these rows, shape (n,)."""
+        own = np.tile(np.arange(len(DIRECTIONS)), len(self.bolts))
+        return np.concatenate([own, self.spread_of[:, 1]])
 
     @property
     def joint_rows(self) -> FloatArray:
-        """Rows of bolts, then of feet, shape (3 n_bolts + 3 n_feet, n_modes)."""
-        n = self.omega.size
-        return np.concatenate([self.bolts.reshape(-1, n), self.feet.reshape(-1, n)])
+        """Rows of bolts, then of feet, shape (n_joint_rows, n_modes)."""
+        feet = self.feet.reshape(-1, self.omega.size)
+        return np.concatenate([self.bolt_rows, feet])
+
+    def in_modes(
+        self, shapes: FloatArray, omega: FloatArray, body: IntArray
+    ) -> "JointedBodies":
+        """Return the bodies in modes that are combinations of these.
+
+        Args:
+            shapes: of the new modes, shape (n_modes, n_new).
+            omega: their natural angular frequencies [rad/s], shape (n_new,).
+            body: index of their bodies, shape (n_new,).
+        """
+        return replace(
+            self,
+            omega=omega,
+            body=body,
+            bolts=self.bolts @ shapes,
+            spread=self.spread @ shapes,
+            feet=self.feet @ shapes,
+            sensors=self.sensors @ shapes,
+            across=self.across @ shapes,
+            points=tuple(
+                replace(p, rows=p.rows @ shapes, gradient=p.gradient @ shapes)
+                for p in self.points
+            ),
+            places=tuple(
+                replace(p, rows=p.rows @ shapes, normal=p.normal @ shapes)
+                for p in self.places
+            ),
+            around_channels={
+                name: one.in_modes(shapes) for name, one in self.around_channels.items()
+            },
+            around_points={
+                name: one.in_modes(shapes) for name, one in self.around_points.items()
+            },
+        )
+
+    def bolt_name(self, number: int) -> str:
+        """Return the name of a bolt."""
+        return self.bolt_names[number] if self.bolt_names else f"{number}"
+
+    def bolt_number(self, name: str) -> int:
+        """Return the number of a bolt."""
+        return self.bolt_names.index(name) if self.bolt_names else int(name)
+
+    def bolts_of(self, name: str) -> tuple[int, ...]:
+        """Return the bolts of a joint or, where there is none of that name, a bolt."""
+        found = self.joints.get(name)
+        return (self.bolt_number(name),) if found is None else found
 
 
 @dataclass(frozen=True, slots=True, eq=False)

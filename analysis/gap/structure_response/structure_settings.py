@@ -109,7 +109,7 @@ class StructureSettings:
         "modes above act by their static part, which hardly changes",
     )
     rigid_share: float = numerical(
-        1e-3, "of the highest", "frequency below which a free mode is a rigid motion"
+        1e-3, "of the band", "frequency below which a free mode is a rigid motion"
     )
     gain_sd: float = numerical(
         0.001,

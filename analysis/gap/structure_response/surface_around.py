@@ -6,7 +6,7 @@ meet mode shapes that a derivative does not reach. Nodes of the surface around t
 give them: a polynomial in the two coordinates of the surface is fitted to each mode.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,6 +33,10 @@ class SurfaceAround:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "scale", "powers", "coefficients")
+
+    def in_modes(self, shapes: FloatArray) -> "SurfaceAround":
+        """Return the surface in modes that are combinations, (n_modes, n_new)."""
+        return replace(self, coefficients=self.coefficients @ shapes)
 
     def change(self, u: float, v: float) -> FloatArray:
         """Return the motion at an offset [m] less that at the place, (3, n_modes)."""

@@ -223,12 +223,14 @@ def merge_nodes(mesh: Mesh) -> Mesh:
         mesh: as read from a file; parts may have been meshed one by one.
 
     Returns:
-        The same elements on shared nodes.
+        The same elements on shared nodes, which keep their order: rows of K and M
+        that another program wrote follow it.
     """
     step = _SAME_NODE * mesh.size
     used: NDArray[np.int64] = np.unique(mesh.cells)
     place = np.round(mesh.nodes[used] / step).astype(np.int64)
     _, first, inverse = np.unique(place, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
     number = np.full(mesh.nodes.shape[0], -1, np.int64)
-    number[used] = inverse.ravel()
-    return Mesh(mesh.nodes[used[first]], number[mesh.cells], mesh.kind)
+    number[used] = np.argsort(order)[inverse.ravel()]
+    return Mesh(mesh.nodes[used[first[order]]], number[mesh.cells], mesh.kind)

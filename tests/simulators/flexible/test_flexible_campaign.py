@@ -19,6 +19,8 @@ from jointbench.simulators.flexible.flexible_effects import (
 from jointbench.simulators.flexible.flexible_margin import flexible_margin
 from jointbench.simulators.flexible.flexible_url import bench_of_flexible_url
 from jointbench.simulators.flexible.hit_records import PRETRIGGER, SAMPLES, BadHit
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.sources.record_flexible import run_record_flexible
 
 URL = "sim:lap-beam?seed=25&hide=loose_bolt,joint_compliance_normal"
@@ -70,6 +72,17 @@ def test_a_hidden_compliance_counts_as_rigid_before(folder: Path) -> None:
     assert truth["effects"]["joint_compliance_normal"]["kn"] > 1e6
     assert truth["truth"] == ["loose_bolt", "joint_compliance_normal"]
     assert 0 <= truth["where"]["loose_bolt"]["bolt"] < len(nominal["bolts_mm"])
+
+
+def test_a_recorded_bench_is_a_model_of_meshed_bodies_too(folder: Path) -> None:
+    """Both bodies, an area for each bolt, every sensor and hammer point."""
+    bench = bench_of_flexible_url(URL)
+    model = read_toml(folder / "hits.model.toml", StructureModel)
+    assert set(model.bodies) == {"bottom", "top"}
+    assert len(model.joints["bolts"].patches) == len(bench.specimen.bolts)
+    assert list(model.sensors) == [one.name for one in bench.specimen.sensors]
+    assert list(model.hits) == [one.name for one in bench.specimen.points]
+    assert model.gap is not None and model.gap.bolt.normal == "rigid"
 
 
 def test_earlier_files_are_not_replaced_without_force(folder: Path) -> None:
