@@ -36,6 +36,7 @@ from jointbench.analysis.structures.matrices.parts import PointMass
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.body_moduli import (
     bodies_on_springs,
+    is_factor,
     modulus_name,
     with_moduli,
     with_support_factor,
@@ -48,7 +49,8 @@ _MODULUS_SD = 0.3
 _FACTOR_SD = 1.0
 """Of ln of the mass at a sensor, or of the springs of supports [-]."""
 _STARTS = (-0.15, 0.15)
-"""Of ln of a factor: modes that change places keep a descent on one side."""
+"""Of ln of a modulus or of supports: modes that change places keep a descent on one
+side."""
 _FITTED = 3
 """Faults of the largest predicted gain that are fitted."""
 _REPAIRED = 2
@@ -140,10 +142,10 @@ class _PosedFault:
         return gain, first + np.clip(moved, -_LONGEST_STEP, _LONGEST_STEP)
 
     def fitted(self, start: FloatArray) -> Optimum:
-        """Fit joints and factor from a start, shape (n_unknowns,), and around it."""
+        """Fit joints and factor from a start, shape (n_unknowns,), or several."""
         at = self.problem.names.index(self.name)
         starts = [start]
-        for moved in _STARTS:
+        for moved in _STARTS if is_factor(self.name) else ():
             other = start.copy()
             other[at] = moved
             starts.append(other)
