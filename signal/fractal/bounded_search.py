@@ -20,8 +20,8 @@ from jointbench.signal.fractal.seen_forms import (
 
 _MOST_STEPS = 40
 """Most steps of one search; fits of a surface take about 10 [-]."""
-_FIRST_STEPS, _KEPT = 5, 2
-"""Steps from each of many starts, after which only so many of the best continue [-]."""
+_FIRST_STEPS = 5
+"""Steps from each of several starts, after which only the best two continue [-]."""
 _MOST_TRIALS = 12
 """Trial dampings of one step [-]."""
 _SETTLED = 1e-7
@@ -109,10 +109,10 @@ def search(
         SIAM J. Appl. Math. 11 (1963) 431. Parameters at an active bound are fixed.
     """
     bounds = np.ascontiguousarray(lower), np.ascontiguousarray(upper)
-    return Found(*_best(sought, np.asarray(starts, dtype=np.float64), *bounds))
+    return Found(*_best(sought, np.array(starts, dtype=np.float64), *bounds))
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _width(sought: Sought, at: FloatArray) -> float:
     """Return the width of the blur among parameters, 0 without one [samples]."""
     if sought.effect == FormEffect.BLUR or sought.effect == FormEffect.TIP:
@@ -120,7 +120,7 @@ def _width(sought: Sought, at: FloatArray) -> float:
     return 0.0
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _fill_forms(sought: Sought, at: FloatArray, forms: FloatArray) -> None:
     """Fill in what depends on exponent and width alone.
 
@@ -139,7 +139,7 @@ def _fill_forms(sought: Sought, at: FloatArray, forms: FloatArray) -> None:
     fill_loss(sought.lag / sought.points, at[0], forms[1])
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _residual(
     sought: Sought, at: FloatArray, forms: FloatArray, white: FloatArray
 ) -> float:
@@ -168,7 +168,7 @@ def _residual(
     return total
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _fill_jacobian(
     sought: Sought,
     at: FloatArray,
@@ -195,11 +195,11 @@ def _fill_jacobian(
             jacobian[j, i] = (trial[j] - gap[j]) / step
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _solve(curvature: FloatArray, descent: FloatArray, damping: float) -> FloatArray:
     """Return the step of damped normal equations by their Cholesky root."""
     size = descent.size
-    root, step = np.zeros((size, size)), descent.copy()
+    root, step = np.empty((size, size)), np.empty(size)
     for i in range(size):
         for j in range(i + 1):
             total = curvature[i, j]
@@ -212,6 +212,7 @@ def _solve(curvature: FloatArray, descent: FloatArray, damping: float) -> FloatA
             else:
                 root[i, j] = total / root[j, j]
     for i in range(size):
+        step[i] = descent[i]
         for k in range(i):
             step[i] -= root[i, k] * step[k]
         step[i] /= root[i, i]
@@ -222,74 +223,124 @@ def _solve(curvature: FloatArray, descent: FloatArray, damping: float) -> FloatA
     return step
 
 
-@compiled()
-def _scales(
+@compiled(error_model="numpy")
+def _normal_equations(
+    jacobian: FloatArray,
+    gap: FloatArray,
+    norm: FloatArray,
+    curvature: FloatArray,
+    descent: FloatArray,
+) -> None:
+    """Fill in the normal equations, each parameter scaled by its column.
+
+    By loops, as all here: expressions of arrays take ten times longer to compile.
+
+    Args:
+        jacobian: shape (n_residuals, n_parameters).
+        gap: residuals, shape (n_residuals,).
+        norm: of the columns, 0 of parameters that are held, shape (n_parameters,).
+        curvature: filled; that of a held parameter is 1, shape (n_parameters,) * 2.
+        descent: filled; that of a held parameter is 0, shape (n_parameters,).
+    """
+    for i in range(norm.size):
+        descent[i] = 0.0
+        for k in range(norm.size):
+            curvature[i, k] = 1.0 if i == k else 0.0
+        if norm[i] == 0:
+            continue
+        for j in range(gap.size):
+            descent[i] -= jacobian[j, i] * gap[j] / norm[i]
+        for k in range(i):
+            if norm[k] == 0:
+                continue
+            total = 0.0
+            for j in range(gap.size):
+                total += jacobian[j, i] * jacobian[j, k]
+            curvature[i, k] = total / (norm[i] * norm[k])
+
+
+@compiled(error_model="numpy")
+def _fill_norms(
     jacobian: FloatArray,
     gap: FloatArray,
     here: FloatArray,
     lower: FloatArray,
     upper: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the norms of the columns, 0 of parameters that are held, and slopes."""
-    norm, slope = np.zeros(here.size), jacobian.T @ gap
+    norm: FloatArray,
+) -> None:
+    """Fill in the norms of the columns, 0 of parameters at an active bound."""
     for i in range(here.size):
-        below = here[i] <= lower[i] and slope[i] > 0
-        above = here[i] >= upper[i] and slope[i] < 0
-        if not (below or above):
-            norm[i] = math.sqrt(np.sum(jacobian[:, i] ** 2))
-    return norm, slope
+        slope, square = 0.0, 0.0
+        for j in range(gap.size):
+            slope += jacobian[j, i] * gap[j]
+            square += jacobian[j, i] * jacobian[j, i]
+        below = here[i] <= lower[i] and slope > 0
+        above = here[i] >= upper[i] and slope < 0
+        norm[i] = 0.0 if below or above else math.sqrt(square)
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _one(
     sought: Sought, start: FloatArray, lower: FloatArray, upper: FloatArray, most: int
 ) -> tuple[FloatArray, FloatArray, float]:
     """Return the local minimum next to a start, as far as some steps lead."""
-    here = np.minimum(np.maximum(start, lower), upper)
+    count = start.size
+    here, there, norm = np.empty(count), np.empty(count), np.empty(count)
+    for i in range(count):
+        here[i] = min(max(start[i], lower[i]), upper[i])
     gap, trial = np.empty(sought.lag.size), np.empty(sought.lag.size)
-    forms, jacobian = np.empty((2, gap.size)), np.empty((gap.size, start.size))
+    forms, jacobian = np.empty((2, gap.size)), np.empty((gap.size, count))
+    curvature, descent = np.empty((count, count)), np.empty(count)
     _fill_forms(sought, here, forms)
     squares, damping = _residual(sought, here, forms, gap), _FIRST_DAMPING
-    for _ in range(most):
+    settled = False
+    for taken in range(most + 1):
         _fill_jacobian(sought, here, gap, upper, jacobian)
-        norm, slope = _scales(jacobian, gap, here, lower, upper)
-        free = np.flatnonzero(norm > 0)
-        # The normal equations of the free parameters, each scaled by its column.
-        scaled = jacobian[:, free] / norm[free]
-        curvature, descent = scaled.T @ scaled, -slope[free] / norm[free]
+        if settled or taken == most:
+            break
+        _fill_norms(jacobian, gap, here, lower, upper, norm)
+        _normal_equations(jacobian, gap, norm, curvature, descent)
         best = squares
         for _ in range(_MOST_TRIALS):
-            there = here.copy()
-            there[free] += _solve(curvature, descent, damping) / norm[free]
-            there = np.minimum(np.maximum(there, lower), upper)
+            step = _solve(curvature, descent, damping)
+            for i in range(count):
+                moved = here[i] + (step[i] / norm[i] if norm[i] > 0 else 0.0)
+                there[i] = min(max(moved, lower[i]), upper[i])
             _fill_forms(sought, there, forms)
             cost = _residual(sought, there, forms, trial)
             if cost < squares:
-                here, squares = there, cost
-                gap[:] = trial
+                here, there, squares = there, here, cost
+                gap, trial = trial, gap
                 damping *= _EASE
                 break
             damping *= _TIGHTEN
-        if best - squares <= _SETTLED * best:
-            break
-    _fill_jacobian(sought, here, gap, upper, jacobian)
+        settled = best - squares <= _SETTLED * best
     return here, jacobian, squares
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _best(
     sought: Sought, starts: FloatArray, lower: FloatArray, upper: FloatArray
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Return the best local minimum of all starts that are promising."""
-    begun, squares = starts.copy(), np.zeros(starts.shape[0])
-    if squares.size > _KEPT:
-        for k in range(squares.size):
-            found = _one(sought, starts[k], lower, upper, _FIRST_STEPS)
-            begun[k], squares[k] = found[0], found[2]
-    order = np.argsort(squares)
-    best = _one(sought, begun[order[0]], lower, upper, _MOST_STEPS)
-    for k in order[1:_KEPT]:
-        found = _one(sought, begun[k], lower, upper, _MOST_STEPS)
-        if found[2] < best[2]:
+    """Return the best local minimum of all starts, the most promising two in full.
+
+    The starts are overwritten by where they lead.
+    """
+    count = starts.shape[0]
+    squares = np.empty(count)
+    best = (starts[0], starts, np.inf)
+    # One place that calls the search: each is compiled on its own.
+    for k in range(count + 2 if count > 1 else 1):
+        last, at = count == 1 or k >= count, k
+        if k >= count:
+            at = 0
+            for i in range(1, count):
+                at = i if squares[i] < squares[at] else at
+        most = _MOST_STEPS if last else _FIRST_STEPS
+        found = _one(sought, starts[at], lower, upper, most)
+        squares[at] = np.inf if last else found[2]
+        for i in range(starts.shape[1]):
+            starts[at, i] = found[0][i]
+        if last and not found[2] >= best[2]:
             best = found
     return best

@@ -29,7 +29,7 @@ def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
     return loss
 
 
-@compiled()
+@compiled(error_model="numpy")
 def fill_loss(share: FloatArray, exponent: float, loss: FloatArray) -> None:
     """Fill in the loss by levelling, see `levelling_loss`."""
     s = exponent

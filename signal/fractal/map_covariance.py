@@ -127,7 +127,7 @@ def _gauss(size: int, most: int) -> tuple[FloatArray, FloatArray]:
     return places, size * vectors[0] ** 2
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _size(ahead: float, passed: float, row: float) -> int:
     """Return the longest run of places in which c is smooth.
 
@@ -142,7 +142,7 @@ def _size(ahead: float, passed: float, row: float) -> int:
     return max(1, int(min(_RUN * left, right)))
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _fill_run(
     first: int, size: int, place: Places, weight: FloatArray, end: int
 ) -> int:
@@ -170,7 +170,7 @@ def _fill_run(
     return end + 4
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _runs(
     lag: IntArray,
     points: int,
@@ -226,7 +226,7 @@ def _runs(
     return end
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _sums(
     seen: FloatArray,
     lag: IntArray,

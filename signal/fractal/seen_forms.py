@@ -62,7 +62,7 @@ def _tip_table() -> FloatArray:
 _TIP_ENDS = _tip_table()
 
 
-@compiled()
+@compiled(error_model="numpy")
 def chebyshev(table: FloatArray, column: int, place: float) -> float:
     """Return a sum of Chebyshev polynomials by Clenshaw's recurrence.
 
@@ -77,7 +77,7 @@ def chebyshev(table: FloatArray, column: int, place: float) -> float:
     return float(table[0, column] + place * one - two)
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _mean_less_one(exponent: float, half: float, x: float) -> float:
     """Return Kummer's M(-s/2; half; -x) - 1, for x below the asymptotic range."""
     total = 0.0
@@ -99,7 +99,7 @@ def _mean_less_one(exponent: float, half: float, x: float) -> float:
     return math.exp(-x) * total - 1.0
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _add_blurred(
     lag: FloatArray,
     exponent: float,
@@ -127,7 +127,7 @@ def _add_blurred(
         form[i] += scale * (reach**exponent * total - at_zero)
 
 
-@compiled()
+@compiled(error_model="numpy")
 def fill_form(
     lag: FloatArray,
     exponent: float,
@@ -147,7 +147,8 @@ def fill_form(
         form: filled, shape (n,).
     """
     if effect == FormEffect.BLUR:
-        form[:] = 0.0
+        for i in range(lag.size):
+            form[i] = 0.0
         _add_blurred(lag, exponent, width, axes, 1.0, form)
     elif effect == FormEffect.TIP:
         _fill_traced(lag, exponent, width, form)
@@ -156,7 +157,7 @@ def fill_form(
             form[i] = lag[i] ** exponent
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _fill_traced(
     lag: FloatArray, exponent: float, width: float, form: FloatArray
 ) -> None:
@@ -167,22 +168,24 @@ def _fill_traced(
     first = chebyshev(_TIP_ENDS, 0, place)
     step = (chebyshev(_TIP_ENDS, 1, place) - first) / (_TIP_BLURS - 1)
     whole = 0.0
-    form[:] = 0.0
+    for i in range(lag.size):
+        form[i] = 0.0
     for k in range(_TIP_BLURS):
         time = math.exp(first + k * step)
         weight = math.exp(fall * math.log(time / fall) - (time - fall))
         whole += weight
         _add_blurred(lag, exponent, width * math.sqrt(time / fall), 1, weight, form)
-    form /= whole
+    for i in range(lag.size):
+        form[i] /= whole
 
 
-@compiled()
+@compiled(error_model="numpy")
 def rolled(value: float, ceiling: float) -> float:
     """Return a value of a structure function that levels off at a ceiling."""
     return -ceiling * math.expm1(-value / ceiling)
 
 
-@compiled()
+@compiled(error_model="numpy")
 def rounded(value: float, quantum: float) -> float:
     """Return a value of the structure function of quantised heights.
 
@@ -209,7 +212,7 @@ def rounded(value: float, quantum: float) -> float:
     return value + quantum**2 * added
 
 
-@compiled()
+@compiled(error_model="numpy")
 def round_all(values: FloatArray, quantum: float) -> None:
     """Replace values of a structure function by those of quantised heights."""
     for i in range(values.size):
