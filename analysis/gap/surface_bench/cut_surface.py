@@ -20,16 +20,10 @@ from scipy.fft import fht
 from scipy.special import gamma, ndtr
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
 
-_COUNT = 512
-"""Lags and wavenumbers of the table."""
-_STEP = 0.08
-"""Step of their logarithms: correlations change over a unit."""
-_DECAYED = 100.0
-"""Lag over its length beyond which a correlation is nothing [-]."""
-_ORDER = -0.5
-"""Order of the Hankel transform that is a cosine transform."""
+_COUNT, _STEP = SURFACE.cut_lags, SURFACE.cut_step
 _PLACE = _STEP * (np.arange(_COUNT) - (_COUNT - 1) / 2)
 _LAG = np.exp(_PLACE)
 """Lags over the correlation length of the rough process [-], shape (_COUNT,)."""
@@ -125,7 +119,7 @@ class CorrelationBells:
 
     def missing(self, lag: FloatArray) -> FloatArray:
         """Return 1 - the correlation at ascending lags over its length, (n,)."""
-        found, near = np.ones(lag.size), lag[lag < _DECAYED]
+        found, near = np.ones(lag.size), lag[lag < SURFACE.cut_decayed]
         bells = -np.expm1(-np.multiply.outer(0.25 * near**2, 1 / self.width))
         found[: near.size] = bells @ self.weight
         return found
@@ -173,7 +167,8 @@ def _cosine_transform(lags: FloatArray, power: float) -> FloatArray:
     """
     # Half of that power is taken out: what is left falls off at both ends of the
     # table, and so does the error of the transform at high wavenumbers.
-    even = fht(lags * np.sqrt(_LAG), _STEP, mu=_ORDER, bias=0.5 + 0.5 * power)
+    # The Hankel transform of order -1/2 is a cosine transform.
+    even = fht(lags * np.sqrt(_LAG), _STEP, mu=-0.5, bias=0.5 + 0.5 * power)
     return np.asarray(even / np.sqrt(2 * np.pi * _WAVE))
 
 

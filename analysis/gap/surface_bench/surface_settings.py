@@ -236,6 +236,15 @@ class SurfaceBenchSettings:
     finish_hurst: float = numerical(
         0.5, "-", "H of the finer process where the lines do not determine it"
     )
+    cut_lags: int = numerical(
+        512, "-", "lags and wavenumbers at which the covariance of a cut is tabulated"
+    )
+    cut_step: float = numerical(
+        0.08, "-", "step of their logarithms: correlations change over a unit"
+    )
+    cut_decayed: float = numerical(
+        100.0, "lengths", "lag beyond which the correlation of a process is nothing"
+    )
     rounding_points: int = numerical(
         14, "-", "power of two of the points of a moment of rounded differences"
     )
