@@ -1,5 +1,6 @@
 """The limit of a test counts CPU time, not the wall clock."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -63,6 +64,7 @@ def test_a_test_that_computes_is_stopped_and_one_that_waits_is_not(
             "ignore::pytest.PytestUnknownMarkWarning",
         ],
         cwd=tmp_path,
+        env=os.environ | {"PYTEST_ADDOPTS": ""},
         capture_output=True,
         text=True,
         check=False,

@@ -264,10 +264,12 @@ def _outside(group: str, path: tuple[str, ...]) -> tuple[_OutsidePoint, ...]:
                 f"({_words(error)}); {_WAY_OUT}"
             )
             continue
+        if not found:  # its name takes longer to read than its entry points
+            continue
         package = _package(distribution)
         name = re.sub(r"[-_.]+", "-", package.rpartition(" ")[0]).lower()
         # Of two copies of a package Python imports the first on the path.
-        if found and name not in seen:
+        if name not in seen:
             seen.add(name)
             points += [_OutsidePoint(package, p.name, p.value, group) for p in found]
     return tuple(sorted(points))

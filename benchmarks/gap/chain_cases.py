@@ -105,38 +105,68 @@ class ScaledLaw:
         return self.law.log_stiffness(log_preload, coordinates) + self.log_factor
 
 
-def make_case(seed: int, link: str, effect: str) -> ChainCase:
-    """Return a chain with an effect hidden at a link, or with none."""
-    joint = make_joint(seed, "" if link == "structure" else effect)
-    rows = _rows(joint.data)
+@dataclass(frozen=True, eq=False)
+class ScaledJoint:
+    """A joint in the band of a structure.
+
+    Attributes:
+        states: of the joint.
+        stiffness: normal, in each state [N/m], shape (n_states,).
+        surface: law and test of the surfaces.
+        scale: stiffness over that of the joint as drawn [-].
+    """
+
+    states: BoltedStates
+    stiffness: np.ndarray
+    surface: SurfaceReading
+    scale: float
+
+
+def scaled_joint(
+    seed: int, effect: str, middle: float, most: int | None = None
+) -> ScaledJoint:
+    """Return a joint with an effect of the contact, or with none.
+
+    Args:
+        seed: of the joint.
+        effect: its name, or empty.
+        middle: stiffness of the middle state [N/m].
+        most: states that are kept, evenly over the torques; None for all.
+    """
+    joint = make_joint(seed, effect)
+    rows = _evenly(_rows(joint.assembled), most)
     stiffness = np.exp(rows.value)
-    scale = _MIDDLE / float(np.median(stiffness))
+    scale = middle / float(np.median(stiffness))
     facts = replace(joint.data.facts, modulus=joint.data.facts.modulus * scale)
     preload = np.exp(joint.data.nominal_log_preload[rows.state])
-    design, hidden = _struck(seed, preload, stiffness * scale, link, effect)
     states = BoltedStates(
         f"chain-{seed}", facts, preload, np.zeros(preload.size, dtype=np.int64)
     )
     law = ScaledLaw(joint.law, float(np.log(scale)))
     reading = SurfaceReading(law, LinkTest(0.0, 0, passed=True))
+    return ScaledJoint(states, stiffness * scale, reading, scale)
+
+
+def make_case(seed: int, link: str, effect: str) -> ChainCase:
+    """Return a chain with an effect hidden at a link, or with none."""
+    joint = scaled_joint(seed, "" if link == "structure" else effect, _MIDDLE)
+    preload = joint.states.preload
+    design, hidden = _struck(seed, preload, joint.stiffness, link, effect)
     campaigns = _measured(seed, design, hidden)
-    return ChainCase(link, effect, reading, campaigns, states, scale)
+    return ChainCase(link, effect, joint.surface, campaigns, joint.states, joint.scale)
 
 
-def expected(seed: int, link: str, effect: str) -> float:
+def expected(seed: int, link: str, effect: str, most: int | None = None) -> float:
     """Return the expected margin of a hidden effect at its own link [-].
 
     At the contact over the stiffness in each state, known to the least sd of a reading;
     at the structure over the hits of one state, the joint free.
     """
-    joint = make_joint(seed, "" if link == "structure" else effect)
     if link != "structure":
-        return contact_margins(as_read(joint))[0]
-    rows = _rows(joint.data)
-    stiffness = np.exp(rows.value)
-    scale = _MIDDLE / float(np.median(stiffness))
-    preload = np.exp(joint.data.nominal_log_preload[rows.state])
-    design, hidden = _struck(seed, preload, stiffness * scale, link, effect)
+        return contact_margins(as_read(make_joint(seed, effect), most))[0]
+    joint = scaled_joint(seed, "", _MIDDLE)
+    preload = joint.states.preload
+    design, hidden = _struck(seed, preload, joint.stiffness, link, effect)
     first = tuple(c for c in design.conditions if c.preload == float(preload[0]))
     one = replace(design, conditions=first)
     return expected_margin(margin_scale(one), hidden[0]).margin
@@ -148,9 +178,16 @@ def _rows(data: JointData) -> JointRows:
     return data.rows.chosen(own & ~data.states.falling[data.rows.state])
 
 
-def as_read(joint: JointCampaign) -> JointCampaign:
+def _evenly(rows: JointRows, most: int | None) -> JointRows:
+    """Return so many states at most, evenly over the torques."""
+    count = rows.value.size
+    kept = np.unique(np.linspace(0, count - 1, min(most or count, count)).round())
+    return rows.chosen(np.isin(np.arange(count), kept))
+
+
+def as_read(joint: JointCampaign, most: int | None = None) -> JointCampaign:
     """Return a joint with the values that a chain reads, without scatter and noise."""
-    rows = _rows(joint.clean)
+    rows = _evenly(_rows(joint.clean), most)
     known = replace(rows, covariance=CHAIN.reading_sd**2 * np.eye(rows.value.size))
     return replace(joint, clean=replace(joint.clean, rows=known))
 

@@ -66,6 +66,8 @@ class JointCampaign:
         site: word of its site.
         data: as measured.
         clean: the same without scatter and noise.
+        assembled: as it is: with the scatter of torques and assemblies, without the
+            errors of an identification.
         law: contact law of the measured surface.
     """
 
@@ -74,6 +76,7 @@ class JointCampaign:
     site: str
     data: JointData
     clean: JointData
+    assembled: JointData
     law: PreloadLaw
 
 
@@ -100,13 +103,15 @@ def make_joint(seed: int, effect: str) -> JointCampaign:
     n = plan.states.torque.size
     clean = data_of(plan, truth_of(plan, seed, np.ones((6, n))), sds)
     plan, factors = scattered(plan)
-    measured = data_of(plan, truth_of(plan, seed, factors), sds, noisy=True)
+    true = truth_of(plan, seed, factors)
+    assembled = data_of(plan, true, sds)
+    measured = data_of(plan, true, sds, noisy=True)
     site = {
         "radiated_damping": "joint:normal",
         "gas_film": "joint:normal",
         "microslip_damping": "joint:tangential",
     }.get(effect, "link:joint")
-    return JointCampaign(seed, effect, site, measured, clean, law)
+    return JointCampaign(seed, effect, site, measured, clean, assembled, law)
 
 
 def plan_joint(rng: np.random.Generator, effect: str) -> JointPlan:

@@ -32,7 +32,14 @@ from jointbench.signal.band_limited.map_likelihood import (
     MapMaximum,
     maximise_map,
 )
-from jointbench.signal.band_limited.map_models import MapModels, again, map_models
+from jointbench.signal.band_limited.map_models import (
+    FEW,
+    MapModels,
+    again,
+    in_sectors,
+    map_models,
+    refitted,
+)
 from jointbench.signal.band_limited.map_moments import (
     longest_map_wave,
     measured_map_moments,
@@ -355,7 +362,10 @@ def _beyond(models: MapModels) -> float:
         spread = float(_covariance(models.best)[ROLL_OFF, ROLL_OFF])
         low = float(models.best.parameters[ROLL_OFF])
         return float(np.exp(low - np.sqrt(BEYOND_RATIO * spread)))
+    if not models.lay:
+        likelihood = in_sectors(likelihood, FEW)
     top = max(models.best, models.endless[0], key=lambda one: one.value)
+    top = refitted(likelihood, top)
     held = top.free.copy()
     held[ROLL_OFF] = False
     start = top.parameters.copy()

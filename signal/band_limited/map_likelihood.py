@@ -39,7 +39,7 @@ _LONGEST_RATIO = 6.0
 """Largest logarithm of the ratio along over across [-]."""
 _LARGEST_SKEW = 0.6
 """Largest e [-]: exponents along and across of a factor 4."""
-_STEPS, _TRIALS = 40, 8
+MOST_STEPS, _TRIALS = 40, 8
 """Most steps of a search, and most dampings of one [-]."""
 _SETTLED = 2e-3
 """Expected gain of the log-likelihood that ends a search [-]."""
@@ -110,9 +110,18 @@ class MapLikelihood:
         """Return the expected spectrum in each bin."""
         return self.seen(at).density
 
-    def seen(self, at: FloatArray) -> SeenDensity:
-        """Return the expected spectrum in each bin, for its derivatives as well."""
-        return self.bins.seen(self.model(at), least=FLOOR)
+    def seen(self, at: FloatArray, *, turned: bool = True) -> SeenDensity:
+        """Return the expected spectrum in each bin, for its derivatives as well.
+
+        Args:
+            at: parameters.
+            turned: whether they have a lay, or derivatives by one are asked for.
+        """
+        return self.bins.seen(self.model(at), least=FLOOR, turned=turned)
+
+    def __call__(self, at: FloatArray) -> float:
+        """Return the log-likelihood of parameters."""
+        return self.of_density(self.density(at), at)
 
     def of_density(self, density: FloatArray, at: FloatArray) -> float:
         """Return the log-likelihood of an expected spectrum."""
@@ -158,20 +167,29 @@ class MapMaximum:
 
 
 def maximise_map(
-    likelihood: MapLikelihood, start: FloatArray, free: BoolArray
+    likelihood: MapLikelihood,
+    start: FloatArray,
+    free: BoolArray,
+    *,
+    most: int = MOST_STEPS,
 ) -> MapMaximum:
     """Find the maximum next to a start, by the parameters that are free.
+
+    Args:
+        likelihood: of the map.
+        start: parameters, shape (8,).
+        free: which of them are searched, same shape.
+        most: steps.
 
     Source:
         Method of scoring: Rao, Proc. Camb. Phil. Soc. 44 (1948) 50, damped as by
         Marquardt; parameters at an active bound are held.
     """
     lower, upper = likelihood.bounds
-    here = _within(start, lower, upper)
-    seen = likelihood.seen(here)
+    here, seen = _levelled(likelihood, _within(start, lower, upper), free)
     value, damping = likelihood.of_density(seen.density, here), 1e-3
     information, slope = _scores(likelihood, here, seen, free)
-    for _ in range(_STEPS):
+    for _ in range(most):
         moving = free & (information.diagonal() > 0)
         moving &= ~((here <= lower) & (slope < 0)) & ~((here >= upper) & (slope > 0))
         steps = _steps(information, slope, moving)
@@ -180,7 +198,7 @@ def maximise_map(
         before = value
         for _ in range(_TRIALS):
             there = _within(here + steps.damped(damping), lower, upper)
-            trial = likelihood.seen(there)
+            there, trial = _levelled(likelihood, there, free)
             reached = likelihood.of_density(trial.density, there)
             if reached > value:
                 here, seen, value, damping = there, trial, reached, 0.2 * damping
@@ -190,6 +208,28 @@ def maximise_map(
             break
         information, slope = _scores(likelihood, here, seen, free)
     return _with_long_waves_along(MapMaximum(here, value, information))
+
+
+def _levelled(
+    likelihood: MapLikelihood, at: FloatArray, free: BoolArray
+) -> tuple[FloatArray, SeenDensity]:
+    """Return parameters with the likeliest level, where it is known, and the density.
+
+    Without noise the density is in proportion to it. Scoring lowers the level of a
+    density that is far too high by no more than a factor e in a step.
+    """
+    turned = bool(free[RATIO]) or at[RATIO] != 0 or at[SKEW] != 0
+    seen = likelihood.seen(at, turned=turned)
+    if at[NOISE] > 0 or not free[LEVEL]:
+        return at, seen
+    ratio = likelihood.bins.sample.power / seen.density
+    factor = float(likelihood.counts @ ratio / likelihood.counts.sum())
+    lower, upper = likelihood.bounds
+    if not lower[LEVEL] < at[LEVEL] + math.log(factor) < upper[LEVEL]:
+        return at, seen
+    raised = at.copy()
+    raised[LEVEL] += math.log(factor)
+    return raised, seen.raised(factor)
 
 
 def _with_long_waves_along(found: MapMaximum) -> MapMaximum:

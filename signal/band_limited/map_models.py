@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.signal.band_limited.map_likelihood import (
+    MOST_STEPS,
     MapLikelihood,
     MapMaximum,
     maximise_map,
@@ -26,6 +27,16 @@ from jointbench.signal.band_limited.seen_bins import seen_bins
 LAY_RATIO = 16.3
 """Twice the gain in log-likelihood by a lay above which it is named: a level of 0.1 %
 for three parameters [-]."""
+FEW = 6
+"""Sectors for surfaces without a lay [-]: images differ between them."""
+_SOME_STEPS = 8
+"""Most steps of models other than the best from few bins to all [-]: within 0.06 of
+their maximum in log-likelihood."""
+_FIRST_STEPS, _AS_GOOD = 5, 0.5
+"""Steps from each of several starts, and difference in log-likelihood after them of two
+that lead to the same maximum [-]."""
+_SOME = 12
+"""Sectors for the search for a lay that moments hardly show [-]."""
 _START_ROLL_OFFS = (0.03, 0.3)
 """Roll-offs over the length from which the search starts [-]."""
 _SMALL = {BLUR: 0.3, NOISE: 0.1}
@@ -84,18 +95,26 @@ def map_models(likelihood: MapLikelihood) -> MapModels:
     tip = likelihood.bins.sample.transfer.tip is not None
     free[BLUR] = tip
     # Few bins suffice to find the surface without a lay.
-    few = replace(likelihood, bins=seen_bins(likelihood.bins.sample.merged()))
+    few = in_sectors(likelihood, FEW)
     starts = [_start(few, share, tip=tip) for share in _START_ROLL_OFFS]
     tried = [maximise_map(few, one, free) for one in starts]
     plain = _sorted(_with_instrument(few, max(tried, key=_criterion), starts))
-    plain = _sorted([_refitted(likelihood, one) for one in plain])
+    best, *others = plain
+    few_steps = [refitted(likelihood, one, most=_SOME_STEPS) for one in others]
+    plain = _sorted([refitted(likelihood, best), *few_steps])
     turned = _with_lay(likelihood, plain[0])
     gain = 2 * (turned.value - plain[0].value)
     if gain <= LAY_RATIO:
         return MapModels(likelihood, plain, _endless(likelihood, plain), False, gain)
-    others = [one for one in plain[1:] if one.criterion > plain[0].criterion - _CLOSE]
-    found = _sorted([turned, *(_turned_too(likelihood, m, turned) for m in others)])
+    close = [one for one in plain[1:] if one.criterion > plain[0].criterion - _CLOSE]
+    found = _sorted([turned, *(_turned_too(likelihood, m, turned) for m in close)])
     return MapModels(likelihood, found, _endless(likelihood, found), True, gain)
+
+
+def in_sectors(likelihood: MapLikelihood, sectors: int) -> MapLikelihood:
+    """Return the likelihood of the same map in few sectors."""
+    sample = likelihood.bins.sample.merged(sectors)
+    return replace(likelihood, bins=seen_bins(sample, few=True))
 
 
 def _turned_too(
@@ -112,8 +131,8 @@ def _turned_too(
 def again(models: MapModels, tolerance: float) -> MapModels:
     """Return the maxima under another tolerance, each from the one before."""
     likelihood = replace(models.likelihood, tolerance=tolerance)
-    rolling = [_refitted(likelihood, one) for one in models.rolling]
-    endless = [_refitted(likelihood, one) for one in models.endless]
+    rolling = [refitted(likelihood, one) for one in models.rolling]
+    endless = [refitted(likelihood, one) for one in models.endless]
     return replace(
         models,
         likelihood=likelihood,
@@ -122,8 +141,11 @@ def again(models: MapModels, tolerance: float) -> MapModels:
     )
 
 
-def _refitted(likelihood: MapLikelihood, one: MapMaximum) -> MapMaximum:
-    return maximise_map(likelihood, one.parameters, one.free)
+def refitted(
+    likelihood: MapLikelihood, one: MapMaximum, *, most: int = MOST_STEPS
+) -> MapMaximum:
+    """Return the maximum of another likelihood next to one, with what was free."""
+    return maximise_map(likelihood, one.parameters, one.free, most=most)
 
 
 def _criterion(one: MapMaximum) -> float:
@@ -168,8 +190,8 @@ def _with_instrument(
             start = at.copy()
             for k in (BLUR, NOISE):
                 start[k] = max(float(start[k]), _SMALL[k]) if free[k] else 0.0
-            tried.append(maximise_map(likelihood, start, free))
-        one = max(tried, key=lambda m: m.value)
+            tried.append(start)
+        one = _best_of(likelihood, tried, free)
         # A blur or noise of nothing is the model without it.
         if np.all(one.parameters[kind] > 0):
             found.append(one)
@@ -180,13 +202,43 @@ def _with_lay(likelihood: MapLikelihood, plain: MapMaximum) -> MapMaximum:
     """Return the best fit with a lay, from several directions."""
     free = plain.free.copy()
     free[[RATIO, ANGLE]] = True
-    best = plain
+    starts = []
     for angle, wide in _lays(likelihood, plain):
         start = plain.parameters.copy()
         start[[RATIO, ANGLE]] = wide, angle
-        best = max(best, maximise_map(likelihood, start, free), key=lambda m: m.value)
+        starts.append(start)
+    where = likelihood if len(starts) == 1 else in_sectors(likelihood, _SOME)
+    found = _best_of(where, starts, free)
+    if where is likelihood:
+        found = max(plain, found, key=_value)
     free[SKEW] = True
-    return maximise_map(likelihood, best.parameters, free)
+    found = maximise_map(where, found.parameters, free)
+    if where is likelihood:
+        return found
+    found = refitted(likelihood, found, most=_SOME_STEPS)
+    # Half of what a lay needs is not doubled by further steps.
+    if 2 * (found.value - plain.value) < 0.5 * LAY_RATIO:
+        return found
+    return refitted(likelihood, found)
+
+
+def _best_of(
+    likelihood: MapLikelihood, starts: list[FloatArray], free: BoolArray
+) -> MapMaximum:
+    """Return the best maximum from several starts, the most promising two in full.
+
+    A second one that is as good as the first by then is on the way to the same.
+    """
+    if len(starts) > 1:
+        begun = [maximise_map(likelihood, x, free, most=_FIRST_STEPS) for x in starts]
+        begun.sort(key=_value, reverse=True)
+        same = begun[0].value - begun[1].value < _AS_GOOD
+        starts = [one.parameters for one in begun[: 1 if same else 2]]
+    return max((maximise_map(likelihood, x, free) for x in starts), key=_value)
+
+
+def _value(one: MapMaximum) -> float:
+    return one.value
 
 
 def _lays(likelihood: MapLikelihood, plain: MapMaximum) -> list[tuple[float, float]]:
@@ -219,7 +271,29 @@ def _endless(
     for one in rolling:
         start, free = one.parameters.copy(), one.free.copy()
         start[ROLL_OFF], free[ROLL_OFF] = likelihood.bounds[1][ROLL_OFF], False
-        found.append(maximise_map(likelihood, start, free))
+        found.append(_without_roll_off(likelihood, one, start, free))
         if rolling[0].value - found[0].value > _CLEAR_ROLL_OFF:
             break
     return _sorted(found)
+
+
+def _without_roll_off(
+    likelihood: MapLikelihood, one: MapMaximum, start: FloatArray, free: BoolArray
+) -> MapMaximum:
+    """Return the maximum of a model without its roll-off.
+
+    Args:
+        likelihood: of the map.
+        one: the maximum with a roll-off.
+        start: its parameters with the farthest one.
+        free: which of them are searched.
+    """
+    if one.value - likelihood(start) < _CLEAR_ROLL_OFF:
+        return maximise_map(likelihood, start, free)
+    # Far from the maximum the way is shorter with few bins.
+    some = in_sectors(likelihood, _SOME)
+    begun = maximise_map(some, start, free)
+    lost = some(one.parameters) - begun.value
+    # Where a roll-off is clear it does not matter by how much.
+    most = _SOME_STEPS if lost > 2 * _CLEAR_ROLL_OFF else MOST_STEPS
+    return refitted(likelihood, begun, most=most)

@@ -36,8 +36,6 @@ _WIDEST = float(np.pi / 40)
 _SECTOR_POINTS, _SECTORS = 12, (24, 72)
 """Points of the shorter side for each sector of directions, and their limits [-]: a lay
 is narrow on large maps only where they resolve it."""
-_FEW = 6
-"""Sectors for surfaces without a lay [-]: images differ between them."""
 _ROWS = 64
 """Rows of the spectrum that are binned at a time [-]."""
 _ROUNDING = 1e-9
@@ -80,17 +78,22 @@ class MapSample:
             require_shape(name, getattr(self, name), self.along.shape)
         freeze(self, "along", "down", "power", "count")
 
-    def merged(self) -> "MapSample":
-        """Return the sample in few sectors, for surfaces without a lay."""
+    def merged(self, sectors: int) -> "MapSample":
+        """Return the sample in few sectors.
+
+        Args:
+            sectors: even, fewer than those of the sample.
+        """
         radius = _ring(np.square(self.along) + np.square(self.down))
         turn = np.arctan2(self.down, self.along) / np.pi + 0.5
         ring = np.floor(radius - radius.min()).astype(np.int64)
-        label = ring * _FEW + np.minimum((turn * _FEW).astype(np.int64), _FEW - 1)
+        sector = np.minimum((turn * sectors).astype(np.int64), sectors - 1)
+        label = ring * sectors + sector
         total = np.asarray(np.bincount(label, self.count), dtype=np.float64)
         full = total > 0
         along, down, power = (
             np.bincount(label, self.count * part)[full] / total[full]
-            for part in (np.abs(self.along), np.abs(self.down), self.power)
+            for part in (self.along, self.down, self.power)
         )
         return replace(self, along=along, down=down, power=power, count=total[full])
 

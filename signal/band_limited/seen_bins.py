@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Spectrum of a model in the bins of a map's sample, as the grid and taper show it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,9 +26,10 @@ _IMAGES = 8
 _FAR_RINGS = (2, 3)
 """Rings of images beyond them, taken at the nodes; the rest is an integral."""
 _FAR = sum(8 * ring for ring in _FAR_RINGS)
-_NODES = (7, 11)
+_NODES, _FEW_NODES = (7, 11), (4, 6)
 """Places along rows and columns between which far images are interpolated [-]: within
-1e-3 of the density, of the whole within 0.02 up to a ratio of 5."""
+1e-3 of the density, of the whole within 0.02 up to a ratio of 5; and the same where a
+surface has hardly a lay."""
 _LONG = 9.0
 """Waves along the sides below which the taper smooths the density [-]."""
 _REACH = 2
@@ -41,11 +42,10 @@ class TakenDensity:
 
     Attributes:
         model: the surface.
-        u: wavenumber along the lay over the pivot [-], shape (n,).
-        v: the same across it, same shape.
-        along: part of the roll-off's sum along the lay [-], same shape.
-        across: part across it, same shape.
-        rest: 1 and both parts, same shape.
+        parts: wavenumbers along the lay and across it over the pivot [-], and the parts
+            of the roll-off's sum along it and across it [-], each of shape (n,); empty
+            without a lay.
+        rest: 1 and both parts [-], shape (n,).
         fall: ln of the density over the level before the short cut, over 1 + H [-].
         square: of the wavenumber [rad^2/sample^2], same shape.
         tip: whether the short cut is a tip's path or a Gaussian.
@@ -53,10 +53,7 @@ class TakenDensity:
     """
 
     model: LaySpectrum
-    u: FloatArray
-    v: FloatArray
-    along: FloatArray
-    across: FloatArray
+    parts: tuple[FloatArray, ...]
     rest: FloatArray
     fall: FloatArray
     square: FloatArray
@@ -81,17 +78,18 @@ class TakenDensity:
         middle = 1 + model.far * (model.ratio + 1 / model.ratio) / 2
         if parameter == ROLL_OFF:
             return 2 * (1 / rest - 1 / middle)
+        u, v, along, across = self.parts
         if parameter == RATIO:
             whole = model.far * (model.ratio - 1 / model.ratio) / 2 / middle
-            return whole - (self.along - self.across) / rest
+            return whole - (along - across) / rest
         first, second = model.powers
         if parameter == ANGLE:
-            turned = first * _over(self.along, self.u) * self.v
-            turned -= second * _over(self.across, self.v) * self.u
+            turned = first * _over(along, u) * v
+            turned -= second * _over(across, v) * u
             return -turned / rest
         assert parameter == SKEW
-        bent = second**2 * self.across * _log(self.v)
-        bent -= first**2 * self.along * _log(self.u)
+        bent = second**2 * across * _log(v)
+        bent -= first**2 * along * _log(u)
         return -bent / (2 * rest)
 
     def _by_hurst(self) -> FloatArray:
@@ -111,27 +109,30 @@ class TakenDensity:
 
 
 def take_density(
-    model: LaySpectrum, x: FloatArray, y: FloatArray, square: FloatArray, *, tip: bool
+    model: LaySpectrum, bins: "SeenBins", *, tip: bool, turned: bool
 ) -> TakenDensity:
     """Return the density of a model after its short cut.
 
     Args:
         model: the surface.
-        x: along the rows [rad/sample], shape (n,).
-        y: down the columns [rad/sample], same shape.
-        square: x^2 + y^2, same shape.
+        bins: wavenumbers.
         tip: whether the short cut is a tip's path or a Gaussian.
+        turned: whether the model has a lay, or derivatives by one are asked for.
     """
-    u, v, along, across = model.parts(x, y)
+    square = bins.square
     middle = 1 + model.far * (model.ratio + 1 / model.ratio) / 2
-    rest = 1 + along
-    rest += across
+    if turned:
+        parts: tuple[FloatArray, ...] = model.parts(bins.x, bins.y)
+        rest = 1 + parts[2]
+        rest += parts[3]
+    else:
+        parts, rest = (), 1 + model.far / model.pivot**2 * square
     fall = np.log(middle / rest)
     log_density = (1 + model.hurst) * fall
     if model.blur > 0:
         log_density += model.log_short_cut(square, tip=tip)
     density = model.level * np.exp(log_density)
-    return TakenDensity(model, u, v, along, across, rest, fall, square, tip, density)
+    return TakenDensity(model, parts, rest, fall, square, tip, density)
 
 
 def _over(part: FloatArray, wave: FloatArray) -> FloatArray:
@@ -183,15 +184,18 @@ class SeenBins:
         """Return the expected spectrum in each bin, with images and noise."""
         return self.seen(model).density
 
-    def seen(self, model: LaySpectrum, *, least: float = 0.0) -> "SeenDensity":
+    def seen(
+        self, model: LaySpectrum, *, least: float = 0.0, turned: bool = True
+    ) -> "SeenDensity":
         """Return the expected spectrum in each bin, for its derivatives as well.
 
         Args:
             model: the surface.
             least: density that no bin falls below.
+            turned: see `take_density`.
         """
         tip = self.sample.transfer.tip is not None
-        taken = take_density(model, self.x, self.y, self.square, tip=tip)
+        taken = take_density(model, self, tip=tip, turned=turned)
         beyond = float(taken.density[-_LAYS:].sum()) * self.disc / model.hurst
         total = (self.folded(taken.density) + beyond) * self.passed
         total += model.noise / self.cell
@@ -238,9 +242,24 @@ class SeenDensity:
         """Return its derivative by a parameter of the surface or the blur."""
         return self.bins.folded_rate(self.taken, parameter)
 
+    def raised(self, factor: float) -> "SeenDensity":
+        """Return the density of a surface of a higher level, without noise.
 
-def seen_bins(sample: MapSample) -> SeenBins:
-    """Return where the density is taken for a sample."""
+        Args:
+            factor: on its density [-].
+        """
+        model = replace(self.taken.model, level=factor * self.taken.model.level)
+        taken = replace(self.taken, model=model, density=factor * self.taken.density)
+        return replace(self, taken=taken, density=factor * self.density)
+
+
+def seen_bins(sample: MapSample, *, few: bool = False) -> SeenBins:
+    """Return where the density is taken for a sample.
+
+    Args:
+        sample: the binned spectrum.
+        few: whether the models have hardly a lay, so that few places suffice.
+    """
     unit = sample.lowest
     waves = np.hypot(sample.along / unit[0], sample.down / unit[1])
     long = waves < _LONG
@@ -250,7 +269,7 @@ def seen_bins(sample: MapSample) -> SeenBins:
     kernel = [_smoothing(n) for n in sample.shape]
     weight = np.outer(kernel[0], kernel[1]).ravel()[near]
     images = _images(sample.along, sample.down, sample.stretch, (1,))
-    nodes, between = _nodes(sample)
+    nodes, between = _nodes(sample, _FEW_NODES if few else _NODES)
     far = _images(*nodes, sample.stretch, _FAR_RINGS)
     turn = np.pi * np.arange(_LAYS) / _LAYS
     cell = float(4 * np.pi**2 / sample.stretch)
@@ -311,10 +330,12 @@ def _images(
     return along + right, down + up
 
 
-def _nodes(sample: MapSample) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
+def _nodes(
+    sample: MapSample, numbers: tuple[int, int]
+) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
     """Return nodes of Chebyshev, and the interpolation from them to the bins."""
     top = np.pi, np.pi / sample.stretch
-    nodes = [np.cos(np.pi * (np.arange(n) + 0.5) / n) for n in _NODES]
+    nodes = [np.cos(np.pi * (np.arange(n) + 0.5) / n) for n in numbers]
     right, up = np.meshgrid(0.5 * top[0] * (1 + nodes[0]), top[1] * nodes[1])
     across = _between(nodes[0], 2 * sample.along / top[0] - 1)
     down = _between(nodes[1], sample.down / top[1])

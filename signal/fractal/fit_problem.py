@@ -4,7 +4,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -12,9 +11,7 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, read_onl
 from jointbench.signal.fractal.levelling_loss import levelling_loss
 from jointbench.signal.fractal.self_affine import (
     TIP_TOLERANCE,
-    SeenForm,
     SeenSurface,
-    form_of,
     rolled_off,
 )
 from jointbench.signal.fractal.structure_covariance import Seen, structure_covariance
@@ -23,8 +20,10 @@ from jointbench.signal.surface.structure_function import StructureFunction
 PLANE_LOSS = 0.5
 """Loss by a mean plane over that by a mean line: between 0 and 1, unknown [-]."""
 
-_RECENT = 8
-"""Forms that are kept: more than a search has parameters [-]."""
+MAP_ERROR = 1e-3
+"""Error of S at each lag of a map that its covariance does not include [-]: without it
+one smooth clean map in ten is rejected at a level of 1 %, by directions in which
+heights that are not levelled would hardly scatter."""
 INDEPENDENT_ROWS = 8.0
 """Rows farther apart than this are independent profiles [samples]."""
 
@@ -32,8 +31,6 @@ INDEPENDENT_ROWS = 8.0
 @dataclass(frozen=True, slots=True)
 class SeenInMetres:
     """Structure function of a measured surface over lags in metres.
-
-    Two are equal where their surfaces are, which a covariance that is kept asks for.
 
     Attributes:
         surface: with lengths in samples.
@@ -64,9 +61,6 @@ class FractalProblem:
         log_pivot: natural logarithm of `pivot`.
         points: of a profile [-].
         loss_share: loss by levelling over that by a mean line [-].
-        form_of: form of the structure function at the lags; a search moves one
-            parameter at a time, and most of them leave the form as it is.
-        unit_loss: loss by levelling at the lags, for an exponent.
     """
 
     estimate: StructureFunction
@@ -79,14 +73,12 @@ class FractalProblem:
     log_pivot: float = field(init=False)
     points: float = field(init=False)
     loss_share: float = field(init=False)
-    form_of: Callable[[SeenForm], FloatArray] = field(init=False)
-    unit_loss: Callable[[float], FloatArray] = field(init=False)
 
     def __post_init__(self) -> None:
         """Work out the lags once: a search looks at them thousands of times."""
         lag = read_only(self.estimate.lag / self.estimate.spacing)
         points = float(self.estimate.points)
-        share, part = lag / points, 1.0 if self.estimate.separate else PLANE_LOSS
+        part = 1.0 if self.estimate.separate else PLANE_LOSS
         object.__setattr__(self, "lag", lag)
         object.__setattr__(self, "pivot", float(np.sqrt(lag[0] * lag[-1])))
         object.__setattr__(self, "log_pivot", math.log(self.pivot))
@@ -94,12 +86,6 @@ class FractalProblem:
         object.__setattr__(self, "loss_share", part)
         object.__setattr__(self, "axes", _axes(self.estimate))
         object.__setattr__(self, "least", float(self.estimate.value.min()))
-        object.__setattr__(
-            self, "form_of", lru_cache(_RECENT)(lambda form: form_of(lag, form))
-        )
-        object.__setattr__(
-            self, "unit_loss", lru_cache(_RECENT)(lambda s: levelling_loss(share, s))
-        )
 
     def loss(self, seen: SeenSurface) -> FloatArray:
         """Return the loss of S by levelling at the fit's lags [m^2].
@@ -108,7 +94,7 @@ class FractalProblem:
         loss.
         """
         points, part = self.points, self.loss_share
-        unit = self.unit_loss(seen.exponent)
+        unit = levelling_loss(self.lag / points, seen.exponent)
         power = seen.amplitude * points**seen.exponent
         if np.isfinite(seen.corner):
             ceiling = seen.amplitude * seen.corner**seen.exponent
@@ -119,8 +105,7 @@ class FractalProblem:
 
     def predicted(self, seen: SeenSurface) -> FloatArray:
         """Return the expected structure function of the levelled surface [m^2]."""
-        shape = self.form_of(seen.form)
-        predicted: FloatArray = seen.seen_of(self.lag, shape) - self.loss(seen)
+        predicted: FloatArray = seen.seen(self.lag) - self.loss(seen)
         return predicted
 
     @property
@@ -145,13 +130,15 @@ class FractalProblem:
         unknown of that size: the loss by a mean plane is not known, and a surface may
         lack waves longer than the profile, which bends S in the same way. The loss of a
         self-affine profile is known exactly, the form of a tip's path to one percent.
+        The covariance of a map is that of heights that are not levelled: `MAP_ERROR`.
         """
         if seen.traced:
             return TIP_TOLERANCE**2 * np.eye(self.lag.size)
         if self.tolerance == 0 and self.estimate.separate:
             return np.zeros((self.lag.size, self.lag.size))
         loss = self.loss(seen) / seen.seen(self.lag)
-        error: FloatArray = self.tolerance**2 * np.eye(loss.size)
+        spread = np.hypot(self.tolerance, 0.0 if self.estimate.separate else MAP_ERROR)
+        error: FloatArray = spread**2 * np.eye(loss.size)
         return error + np.outer(loss, loss)
 
     def within(self, keep: BoolArray) -> "FractalProblem":
@@ -170,11 +157,16 @@ class FractalProblem:
             up_to: longest lag to use [samples]; at least three lags are used.
         """
         count = max(3, int(np.count_nonzero(self.lag <= up_to)))
-        log_lag = np.log(self.lag[:count])
-        slope, level = np.polyfit(log_lag, np.log(self.estimate.value[:count]), 1)
-        exponent = float(np.clip(slope, 0.1, 1.9))
-        shift = (slope - exponent) * float(np.mean(log_lag))
-        return SeenSurface(exponent=exponent, amplitude=float(np.exp(level + shift)))
+        log_lag, log_value = (
+            np.log(self.lag[:count]),
+            np.log(self.estimate.value[:count]),
+        )
+        middle = float(log_lag.mean())
+        place = log_lag - middle
+        slope = float(place @ log_value) / float(place @ place)
+        exponent = min(max(slope, 0.1), 1.9)
+        level = float(log_value.mean()) - exponent * middle
+        return SeenSurface(exponent=exponent, amplitude=math.exp(level))
 
 
 def pose(estimate: StructureFunction, *, tolerance: float = 0.0) -> FractalProblem:

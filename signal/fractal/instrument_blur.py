@@ -1,36 +1,36 @@
 # SPDX-License-Identifier: MIT
-"""Effect of blur, tip and band limit of an instrument on a structure function."""
+"""FormEffect of blur, tip and band limit of an instrument on a structure function."""
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import betainc, gammaincinv, hyp1f1
-from scipy.special import gamma as gamma_function
+from scipy.special import betainc
 
 from jointbench.acquisition.basics.arrays import FloatArray, read_only
+from jointbench.signal.fractal.seen_forms import (
+    LIMIT_RANGE,
+    TIP_FALL,
+    FormEffect,
+    fill_form,
+)
 from jointbench.signal.surface.structure_constant import spectral_integral
 
-_ASYMPTOTIC_FROM = 40.0
-"""Squared lag over 4 width^2 above which six terms give nine digits [-]."""
-_ASYMPTOTIC_TERMS = 6
 _QUADRATURE_NODES = 96
 _QUADRATURE_LAGS = 60.0
 """Lag beyond which a cosine over the band averages out [samples]; the nodes resolve it
 up to there."""
-_TIP_FALL = 1.3
-"""Times 1 / s: half the power by which a tip's path falls off [-], see `tip_fall`."""
-_TIP_BLURS = 16
-"""Gaussian blurs that represent the path of a tip: S within 2e-3 at all lags [-]."""
-_TIP_TAILS = (1e-4, 1.0 - 1e-7)
-"""Shares of them below the narrowest and the widest [-]."""
+_LIMIT_NODES = 24
+"""Nodes of the table of a sharp band limit: ten digits [-]."""
+_KEPT_LAGS = 16
+"""Sets of lags whose table is kept [-]."""
 _FRACTION_TERMS = ((0.0, 60), (16.0, 12))
 """Depths of the continued fraction from these arguments on [-]: twelve digits from pi
 upwards."""
 
 
 def blurred_power(
-    lag: FloatArray, exponent: float, width: float | FloatArray, axes: int
+    lag: FloatArray, exponent: float, width: float, axes: int
 ) -> FloatArray:
     """Return the structure function lag^s after a Gaussian blur of the heights.
 
@@ -40,28 +40,13 @@ def blurred_power(
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        width: standard deviation of the blur [samples], above 0; an array broadcasts
-            with `lag`.
+        width: standard deviation of the blur [samples], above 0.
         axes: 1 or 2 directions of blur; 2 assumes an isotropic surface.
 
     Source:
         Abramowitz and Stegun, 13.1.2 and 13.5.1 (far from the origin).
     """
-    half = axes / 2
-    at_zero = float(gamma_function(half + exponent / 2) / gamma_function(half))
-    reach = lag / (2 * width)
-    argument = reach**2
-    near = argument < _ASYMPTOTIC_FROM
-    mean = np.empty_like(argument)
-    mean[near] = at_zero * hyp1f1(-exponent / 2, half, -argument[near])
-    inverse = 1 / argument[~near]
-    total = np.ones_like(inverse)
-    for k in range(_ASYMPTOTIC_TERMS - 1, -1, -1):
-        factor = (k - exponent / 2) * (k + 1 - half - exponent / 2) / (k + 1)
-        total = 1 + factor * inverse * total
-    mean[~near] = reach[~near] ** exponent * total
-    blurred: FloatArray = (2 * width) ** exponent * (mean - at_zero)
-    return blurred
+    return _form(lag, exponent, width, axes, FormEffect.BLUR)
 
 
 def tip_fall(exponent: float) -> float:
@@ -79,7 +64,7 @@ def tip_fall(exponent: float) -> float:
     Args:
         exponent: s = 4 - 2D [-].
     """
-    return _TIP_FALL / exponent
+    return TIP_FALL / exponent
 
 
 def traced_power(lag: FloatArray, exponent: float, width: float) -> FloatArray:
@@ -95,14 +80,22 @@ def traced_power(lag: FloatArray, exponent: float, width: float) -> FloatArray:
         (1 + x)^-n is the mean of exp(-t x) over t with a gamma distribution of n: a
         mean over Gaussian blurs, taken here at even steps of ln t.
     """
-    fall = tip_fall(exponent)
-    ends = np.log(gammaincinv(fall, _TIP_TAILS))
-    time = np.exp(np.linspace(ends[0], ends[1], _TIP_BLURS))
-    weight = np.exp(fall * np.log(time / fall) - (time - fall))
-    widths = width * np.sqrt(time / fall)
-    blurred = blurred_power(lag, exponent, widths[(...,) + (None,) * lag.ndim], 1)
-    shape: FloatArray = np.tensordot(weight / weight.sum(), blurred, axes=1)
-    return shape
+    return _form(lag, exponent, width, 1, FormEffect.TIP)
+
+
+def plain_power(lag: FloatArray, exponent: float) -> FloatArray:
+    """Return the structure function lag^s itself, at lags that are not negative."""
+    return _form(lag, exponent, 0.0, 1, FormEffect.NONE)
+
+
+def _form(
+    lag: FloatArray, exponent: float, width: float, axes: int, effect: FormEffect
+) -> FloatArray:
+    """Return a form of `seen_forms` at lags of any shape."""
+    flat = np.array(lag, dtype=np.float64).ravel()
+    form = np.empty(flat.size)
+    fill_form(flat, exponent, width, axes, int(effect), form)
+    return form.reshape(np.shape(lag))
 
 
 def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArray:
@@ -119,33 +112,67 @@ def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArra
         P ~ f^(-1-s); the missing tail is a generalised exponential integral,
         Abramowitz and Stegun, 5.1.22.
     """
-    missing = np.zeros_like(lag)
+    limited = np.zeros_like(lag)
     some = lag > 0
-    angle = np.pi * lag[some]
-    phase = np.asarray(-1j * angle, dtype=np.complex128)
-    tail = np.real(_exponential_integral(1 + exponent, phase))
-    missing[some] = np.pi**-exponent * (1 / exponent - tail)
-    if axes > 1:
-        missing += _missing_across(lag, exponent)
-    limited: FloatArray = lag**exponent - missing / spectral_integral(exponent)
+    limited[some] = _limited(lag[some], np.array([[exponent]]), axes)[0]
     return limited
 
 
-def _missing_across(lag: FloatArray, exponent: float) -> FloatArray:
+@lru_cache(maxsize=_KEPT_LAGS)
+def limited_table(lags: tuple[float, ...], axes: int) -> FloatArray:
+    """Return the form of a band limit over lag^s as Chebyshev coefficients over s.
+
+    Args:
+        lags: above 0 [samples].
+        axes: 1 or 2 directions of the limit.
+
+    Returns:
+        Coefficients over `LIMIT_RANGE`, shape (n_coefficients, n_lags), read-only.
+    """
+    lag = np.array(lags)
+    place = np.cos(np.pi * (np.arange(_LIMIT_NODES) + 0.5) / _LIMIT_NODES)
+    low, high = LIMIT_RANGE
+    exponent = 0.5 * (low + high + (high - low) * place[:, None])
+    share = _limited(lag, exponent, axes) / lag**exponent
+    found = np.polynomial.chebyshev.chebfit(place, share, _LIMIT_NODES - 1)
+    return read_only(np.ascontiguousarray(found))
+
+
+def _limited(lag: FloatArray, exponent: FloatArray, axes: int) -> FloatArray:
+    """Return `band_limited_power` at lags above 0, shape (n_exponents, n_lags).
+
+    Args:
+        lag: shape (n_lags,).
+        exponent: shape (n_exponents, 1).
+        axes: 1 or 2.
+    """
+    angle = np.pi * lag
+    phase = np.asarray(-1j * angle, dtype=np.complex128)
+    tail = np.real(_exponential_integral(1 + exponent, phase))
+    missing = np.pi**-exponent * (1 / exponent - tail)
+    if axes > 1:
+        missing += _missing_across(lag, exponent)
+    integral = np.array([[spectral_integral(float(s))] for s in exponent[:, 0]])
+    limited: FloatArray = lag**exponent - missing / integral
+    return limited
+
+
+def _missing_across(lag: FloatArray, exponent: FloatArray) -> FloatArray:
     """Return the loss of oblique waves by a band limit across a map.
 
     A profile of an isotropic map contains the waves of all directions; of those that
     are slow along it, the ones too fast across it are missing. The remaining share of
     the power at the angular frequency q is a regularised incomplete beta function.
+    Shapes are those of `_limited`.
     """
     nodes, weights = _quadrature()
     q = np.pi * (nodes + 1) / 2
     cosine_square = q**2 / (np.pi**2 + q**2)
     lost = betainc((1 + exponent) / 2, 0.5, cosine_square)
     density = np.pi / 2 * weights * lost * q ** (-1 - exponent)
-    missing = np.full(lag.shape, float(density.sum()))
+    missing = np.tile(density.sum(axis=1, keepdims=True), (1, lag.size))
     near = lag < _QUADRATURE_LAGS
-    missing[near] -= np.cos(np.outer(lag[near], q)) @ density
+    missing[:, near] -= density @ np.cos(np.outer(q, lag[near]))
     return missing
 
 
@@ -157,10 +184,15 @@ def _quadrature() -> tuple[FloatArray, FloatArray]:
 
 
 def _exponential_integral(
-    order: float, argument: NDArray[np.complex128]
+    order: FloatArray, argument: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
-    """Return E_order(argument) by its continued fraction, for |argument| > 3."""
-    result = np.exp(-argument)
+    """Return E_order(argument) by its continued fraction, for |argument| > 3.
+
+    Args:
+        order: shape (n_orders, 1).
+        argument: shape (n_arguments,).
+    """
+    result = np.tile(np.exp(-argument), (order.size, 1))
     size = np.abs(argument)
     ends = [*(first for first, _ in _FRACTION_TERMS[1:]), np.inf]
     for (first, terms), end in zip(_FRACTION_TERMS, ends, strict=True):
@@ -169,5 +201,5 @@ def _exponential_integral(
         value = own + order + 2 * terms
         for k in range(terms, 0, -1):
             value = own + order + 2 * (k - 1) - k * (order + k - 1) / value
-        result[part] /= value
+        result[:, part] /= value
     return result

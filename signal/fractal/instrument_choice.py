@@ -15,7 +15,11 @@ from jointbench.signal.fractal.least_squares import (
     fit_model,
     settle,
 )
-from jointbench.signal.fractal.self_affine import InstrumentModel, tip_radius
+from jointbench.signal.fractal.self_affine import (
+    InstrumentModel,
+    SeenSurface,
+    tip_radius,
+)
 
 ACCEPT_PROBABILITY = 0.01
 """Least probability of a larger chi2 at which a model is accepted [-]."""
@@ -32,6 +36,9 @@ lower limits cover more insignificant noise, and widen more clean profiles."""
 _EVEN = {1: 8.0, 2: 14.0}
 """Gain of chi2 by one or two more parameters for equal weights of both models in D [-].
 With Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+_FAR_WORSE = 40.0
+"""Excess of chi2 of a smaller model, by the weights of the largest, above which its own
+weights are not worked out [-]."""
 _BLUNTEST_TIP = 100e-6
 """Largest radius of a stylus [m]: twice that of the bluntest in use, as it is known
 within a factor of two only."""
@@ -55,15 +62,20 @@ class Doubt:
 
 
 def choose_instrument(
-    problem: FractalProblem, *, rolls_off: bool
+    problem: FractalProblem, at: SeenSurface, *, rolls_off: bool
 ) -> tuple[GlsFit, Doubt]:
     """Choose the smallest instrument model that no larger one improves significantly.
+
+    Args:
+        problem: the structure function to fit.
+        at: surface of the first weights.
+        rolls_off: whether the surface has a corner.
 
     Returns:
         The fit, and the effect of an insignificantly better, larger model on its law.
     """
     kinds = InstrumentModel
-    plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
+    plain = settle(problem, Model(kinds.NONE, rolls_off), at)
     own = weigh(problem, plain.seen)
     # With a poor model the weights do not converge; all three use the last ones.
     plain = fit_model(problem, plain.model, own, start=plain.parameters)
@@ -88,16 +100,13 @@ def _without_tip(
     richest = settle(problem, both.model, both.seen)
     if richest.probability < _PRUNING_PROBABILITY:
         return richest, no_doubt()
-    single = [
-        settle(problem, Model(kind, rolls_off), start.seen)
-        for kind, start in (
-            (kinds.BAND_LIMIT, plain),
-            (kinds.NOISE, noisy),
-            (kinds.PSF, richest),
-        )
-    ]
+    own = weigh(problem, richest.seen)
     best, doubt = richest, no_doubt()
-    for fit in single:
+    for kind in (kinds.BAND_LIMIT, kinds.NOISE, kinds.PSF):
+        quick = fit_model(problem, Model(kind, rolls_off), own)
+        if quick.chi2 - richest.chi2 > _FAR_WORSE:
+            continue
+        fit = settle(problem, quick.model, quick.seen, start=quick.parameters)
         small, rival = _with_rival(problem, fit, richest)
         more = richest.parameters.size - fit.parameters.size
         stands = small.chi2 - rival.chi2 < (_ONE_MORE if more == 1 else _TWO_MORE)
@@ -105,7 +114,8 @@ def _without_tip(
         accepted = fit.probability >= ACCEPT_PROBABILITY
         if stands and accepted and (better or best is richest):
             best, doubt = fit, _doubt(small, rival)
-    known = {kinds.NOISE: noisy, kinds.PSF_AND_NOISE: both}
+    # A blur alone was found as significant by the test of both.
+    known = {kinds.NOISE: noisy, kinds.PSF: both, kinds.PSF_AND_NOISE: both}
     if best.model.instrument in known:
         doubt = _held_back(plain, known[best.model.instrument], best, doubt)
     return best, doubt

@@ -51,6 +51,15 @@ class Weights:
             raise LinAlgError("gaps of a fit are no numbers, or its root is singular")
         return white
 
+    def backwards(self, white: FloatArray) -> FloatArray:
+        """Return the weights of relative gaps in sums of whitened ones.
+
+        Args:
+            white: weights of the whitened ones, shape (n_lags, n_columns).
+        """
+        found: FloatArray = dtrtrs(self.root, white, lower=True, trans=1)[0]
+        return found
+
 
 def weigh(
     problem: FractalProblem, at: SeenSurface, *, scatter: FloatArray | None = None

@@ -10,12 +10,15 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray, read_only
 from jointbench.acquisition.basics.tail_probabilities import chi2_above
-from jointbench.signal.fractal.bounded_search import Found, search
+from jointbench.signal.fractal.bounded_search import Found, Sought, search
 from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.instrument_blur import limited_table
 from jointbench.signal.fractal.lag_weights import Weights, weigh
+from jointbench.signal.fractal.seen_forms import FormEffect
 from jointbench.signal.fractal.self_affine import InstrumentModel, SeenSurface
 
 _EXPONENT_RANGE = (0.02, 1.98)
@@ -36,8 +39,11 @@ _CORNER_RANGE = (0.5, 10.0)
 """Range of the corner: lowest [samples] and highest [longest lags]."""
 _SMALLEST_INFORMATION = 1e-6
 """Lower bound of the singular values of the scaled Jacobian [-]."""
+_NO_TABLE = read_only(np.empty((0, 0)))
 _RENEWALS = 2
 """Recalculations of the covariance; it converges quickly [-]."""
+_PRUNED = 1e-9
+"""Probability of a larger chi2 below which no other weights make a model right [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,28 +136,68 @@ def fit_model(
         The best of all starts.
     """
     lower, upper = _bounds(problem, model)
-
-    def residual(parameters: FloatArray) -> FloatArray:
-        """Return the whitened relative residuals."""
-        expected = problem.predicted(_unpack(problem, model, parameters))
-        gap = (problem.estimate.value - expected) / weights.reference
-        return weights.whitened(gap)
-
     starts = _starts(problem, model) if start is None else [start]
-    found = [search(residual, begin, lower, upper) for begin in starts]
-    best = min(found, key=lambda one: one.squares)
-    return _result(problem, model, weights, best)
+    found = search(_sought(problem, model, weights), np.array(starts), lower, upper)
+    if not np.isfinite(found.squares):
+        raise LinAlgError("gaps of a fit are no numbers, or its root is singular")
+    return _result(problem, model, weights, found)
 
 
-def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
+def _sought(problem: FractalProblem, model: Model, weights: Weights) -> Sought:
+    """Return what a search needs of a problem, a model and weights."""
+    limited = model.instrument is InstrumentModel.BAND_LIMIT
+    lags = tuple(problem.lag.tolist()) if limited else ()
+    return Sought(
+        lag=np.array(problem.lag),
+        value=np.array(problem.estimate.value),
+        reference=np.array(weights.reference),
+        root=np.ascontiguousarray(weights.root),
+        limit=limited_table(lags, problem.axes) if limited else _NO_TABLE,
+        log_pivot=problem.log_pivot,
+        least=problem.least,
+        points=problem.points,
+        loss_share=problem.loss_share,
+        quantum=float(problem.estimate.quantum),
+        axes=problem.axes,
+        effect=int(_effect(model.instrument)),
+        noisy=model.instrument.has_noise,
+        rolls_off=model.rolls_off,
+    )
+
+
+def _effect(instrument: InstrumentModel) -> FormEffect:
+    """Return what acts on the power law."""
+    if instrument is InstrumentModel.BAND_LIMIT:
+        return FormEffect.LIMIT
+    if instrument.is_traced:
+        return FormEffect.TIP
+    return FormEffect.BLUR if instrument.has_psf else FormEffect.NONE
+
+
+def settle(
+    problem: FractalProblem,
+    model: Model,
+    at: SeenSurface,
+    *,
+    start: FloatArray | None = None,
+) -> GlsFit:
     """Fit one model and recalculate the weights until they converge.
+
+    Args:
+        problem: the structure function to fit.
+        model: the model.
+        at: surface and instrument of the first weights: near those that the model
+            finds if it is right.
+        start: see `fit_model`.
 
     Returns:
         The fit, judged by its own weights: where the model is poor and does not
             converge, those of the last round may belong to another surface.
     """
-    result = fit_model(problem, model, weigh(problem, at))
+    result = fit_model(problem, model, weigh(problem, at), start=start)
     for _ in range(_RENEWALS):
+        if result.probability < _PRUNED:
+            break
         weights = weigh(problem, result.seen)
         result = fit_model(problem, model, weights, start=result.parameters)
     return by_own_weights(problem, result)
@@ -172,8 +218,7 @@ def _result(
     seen = _unpack(problem, model, best.parameters)
     predicted = problem.predicted(seen)
     covariance = _inverse(best.jacobian)
-    share = np.diag(predicted / weights.reference)
-    whitening = weights.whitened(share)
+    share = predicted / weights.reference
     return GlsFit(
         model=model,
         seen=seen,
@@ -181,7 +226,7 @@ def _result(
         predicted=predicted,
         parameters=best.parameters,
         covariance=covariance,
-        gain=-covariance @ best.jacobian.T @ whitening,
+        gain=-covariance @ weights.backwards(best.jacobian).T * share,
         pivot=problem.pivot,
         chi2=best.squares,
         log_determinant=weights.log_determinant,
@@ -194,11 +239,13 @@ def _inverse(jacobian: FloatArray) -> FloatArray:
 
     Undetermined parameters get a huge variance instead of a division by zero.
     """
-    size = np.linalg.norm(jacobian, axis=0)
+    normal = jacobian.T @ jacobian
+    size = np.sqrt(normal.diagonal())
     scale = np.where(size > 0, size, 1.0)
-    _, values, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
-    spread = directions.T / np.maximum(values, _SMALLEST_INFORMATION)
-    covariance: FloatArray = spread @ spread.T / np.outer(scale, scale)
+    apart = np.outer(scale, scale)
+    values, directions = np.linalg.eigh(normal / apart)
+    spread = directions / np.sqrt(np.maximum(values, _SMALLEST_INFORMATION**2))
+    covariance: FloatArray = spread @ spread.T / apart
     return covariance
 
 

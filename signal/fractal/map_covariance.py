@@ -3,8 +3,9 @@
 
 Rows r apart, differences over lags a <= b have a covariance c(u, r) that is even in u,
 the distance of their middles, and smooth but for u = (b - a) / 2 and (a + b) / 2 where
-r is small. Its square is added up over u by steps that widen with the distance from
-these places, or from the row; over r by every row first, then by a few of each octave.
+r is small. Its square is added up over u by a few places in runs that are as long as
+the distance from these two, or from the row; over r by every row first, then by a few
+of each octave.
 """
 
 from dataclasses import dataclass
@@ -15,14 +16,22 @@ from numpy.typing import NDArray
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
 
-Counts = NDArray[np.int32]
-_STEP = 0.1
-"""Longest step over the distance from the next place where c is not smooth [-]; with
-it and the rows below a covariance is within 2e-4 of the full sum."""
-_EVERY_ROW = 8
+Places = NDArray[np.uint32]
+_RUN = 0.5
+"""Length of a run of places over the distance from the next one where c is not smooth
+[-]; with it and the rows below a covariance is within 2e-4 of the full sum."""
+_FEWEST = 8
+"""Places of the shortest run of which only four count [-]."""
+_INNER, _OUTER = 0.3399810436, 0.8611363116
+"""Nodes of Gauss over half the length of a run [-]."""
+_ROOM = 64
+"""Places of a pair of lags and a row for which there is room at first [-]."""
+_FAR = 1e9
+"""Distance of a place that is not there [samples]."""
+_EVERY_ROW = 4
 """Rows of the nearest that all count; the first octave begins there [rows]."""
-_ROWS = 4
-"""Rows of each octave: polynomials up to degree 7 are added up exactly [-]."""
+_ROWS = 3
+"""Rows of each octave: polynomials up to degree 5 are added up exactly [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,17 +43,19 @@ class MapSums:
         points: of a row.
         row: distances of rows, as far as heights vary [samples], shape (n_rows,).
         weight: of each of them in the mean over all pairs of rows [-], same shape.
-        place: distances d of the starts of two differences [samples], shape (n_steps,).
-        count: positions for which each stands, both signs of u [-], same shape.
-        start: first step of each pair of lags and row, shape (n_pairs * n_rows + 1,).
+        place: distances d of the starts of two differences, plus `points` [samples],
+            shape (n_places,).
+        count: pairs of positions for which each stands, both signs of u [-], same
+            shape.
+        start: first place of each pair of lags and row, shape (n_pairs * n_rows + 1,).
     """
 
     lag: IntArray
     points: int
     row: FloatArray
     weight: FloatArray
-    place: Counts
-    count: Counts
+    place: Places
+    count: FloatArray
     start: IntArray
 
     @property
@@ -77,11 +88,14 @@ def map_sums(lag: IntArray, points: int, profiles: int, row_distance: float) -> 
     row = row * row_distance
     pairs = lag.size * (lag.size + 1) // 2
     start = np.empty(pairs * row.size + 1, dtype=np.int64)
-    place, number = np.empty((2, 0), dtype=np.int32)
-    size = _steps(lag, points, _STEP * row, start, place, number)
-    place, number = np.empty((2, size), dtype=np.int32)
-    _steps(lag, points, _STEP * row, start, place, number)
-    return MapSums(lag, points, row, weight, place, number, start)
+    room = _ROOM * pairs * row.size + points
+    while True:
+        place, number = np.empty(room, dtype=np.uint32), np.empty(room)
+        size = _runs(lag, points, row, start, place, number)
+        if size:
+            break
+        room *= 2
+    return MapSums(lag, points, row, weight, place[:size], number[:size], start)
 
 
 def _octaves(profiles: int) -> list[tuple[FloatArray, FloatArray]]:
@@ -114,54 +128,100 @@ def _gauss(size: int, most: int) -> tuple[FloatArray, FloatArray]:
 
 
 @compiled()
-def _steps(
+def _size(ahead: float, passed: float, row: float) -> int:
+    """Return the longest run of places in which c is smooth.
+
+    Args:
+        ahead: distance to the next place where c is not smooth, from the first of the
+            run [samples].
+        passed: distance from the last one [samples].
+        row: distance of the rows: c is as smooth across it [samples].
+    """
+    left = max(passed, row)
+    right = max(_RUN * row, ahead * _RUN / (1 + _RUN))
+    return max(1, int(min(_RUN * left, right)))
+
+
+@compiled()
+def _fill_run(
+    first: int, size: int, place: Places, weight: FloatArray, end: int
+) -> int:
+    """Fill in the places of a run that count, and for how many; return their end.
+
+    Of a long run four that are nearly those of Gauss, with weights that add up
+    polynomials up to degree 3 exactly.
+    """
+    if size < _FEWEST:
+        for k in range(size):
+            place[end + k], weight[end + k] = first + k, 1.0
+        return end + size
+    middle = 0.5 * (size - 1)
+    # Places on both sides of the middle, which may be between two of them.
+    near = round(middle + _INNER * 0.5 * size) - middle
+    far = round(middle + _OUTER * 0.5 * size) - middle
+    moment = size * (size * size - 1) / 24
+    outer = (moment - 0.5 * size * near * near) / (far * far - near * near)
+    inner = 0.5 * size - outer
+    for k in range(4):
+        sign = -1 if k % 2 else 1
+        apart, own = (near, inner) if k < 2 else (far, outer)
+        place[end + k] = first + round(middle + sign * apart)
+        weight[end + k] = own
+    return end + 4
+
+
+@compiled()
+def _runs(
     lag: IntArray,
     points: int,
-    least: FloatArray,
+    rows: FloatArray,
     start: IntArray,
-    place: Counts,
-    count: Counts,
+    place: Places,
+    weight: FloatArray,
 ) -> int:
-    """Choose the steps of each pair of lags and row; return their number.
+    """Choose the places of each pair of lags and row; return their number.
 
-    The differences begin d apart; of half the positions, u >= 0, d is >= (a - b) / 2.
-    Each step has an odd number of positions and stands for them by its middle.
+    The differences begin d apart; of half the positions, u >= 0, d is >= (a - b) / 2,
+    and c is not smooth at 0 and a.
 
     Args:
         lag: [samples].
         points: of a row.
-        least: positions of a step at least, for each row [-].
-        start: first step of each pair and row, filled.
-        place: filled, unless it is empty.
-        count: filled, unless it is empty.
+        rows: distances of the rows [samples].
+        start: first place of each pair and row, filled as far as there is room.
+        place: filled.
+        weight: filled.
+
+    Returns:
+        Their number, or 0 where there is no room.
     """
     end = 0
     k = 0
     for i in range(lag.size):
         for j in range(i, lag.size):
             a, b = lag[i], lag[j]
-            for step in least:
+            for row in rows:
                 start[k] = end
                 k += 1
-                here = -((b - a) // 2)
-                while here < points - b:
-                    # Distance from the next and the last place where c is not smooth.
-                    ahead, passed = points, points
-                    if here <= 0:
-                        ahead = -here
-                    elif here <= a:
-                        ahead, passed = a - here, here
-                    else:
-                        passed = here - a
-                    size = max(step, _STEP * min(ahead, passed))
-                    size = min(size, ahead, points - b - here)
-                    middle = 2 * here == a - b  # alone its own mirror image
-                    wide = 1 if middle or size < 3 else (int(size) - 1) | 1
-                    if place.size:
-                        place[end] = here + wide // 2
-                        count[end] = 1 if middle else 2 * wide
-                    end += 1
-                    here += wide
+                here, last = -((b - a) // 2), points - b
+                begin = end
+                if end + last - here > place.size:
+                    return 0
+                if 2 * here == a - b:  # alone its own mirror image
+                    place[end], weight[end] = points + here, 0.5
+                    end, here = end + 1, here + 1
+                while here < last:
+                    ahead, passed, stop = _FAR, float(here - a), last
+                    if here < 0:
+                        ahead, passed, stop = -here, here - (a - b), 0
+                    elif here < a:
+                        ahead, passed, stop = a - here, here, a
+                    size = min(_size(ahead, passed, row), stop - here, last - here)
+                    end = _fill_run(points + here, size, place, weight, end)
+                    here += size
+                for at in range(begin, end):
+                    apart = max(0, int(place[at]) - points)
+                    weight[at] *= 2 * (points - b - apart)
     start[k] = end
     return end
 
@@ -171,28 +231,32 @@ def _sums(
     seen: FloatArray,
     lag: IntArray,
     weight: FloatArray,
-    place: Counts,
-    count: Counts,
+    place: Places,
+    count: FloatArray,
     start: IntArray,
 ) -> FloatArray:
     """Return twice the weighted mean of c^2 for each pair of lags."""
-    points = seen.shape[1]
+    rows, points = seen.shape
+    # Both signs of a distance, so that no sign is looked at below.
+    both = np.empty((rows, 2 * points))
+    for row in range(rows):
+        both[row, points:] = seen[row]
+        both[row, 1:points] = seen[row, :0:-1]
     sums = np.zeros((lag.size, lag.size))
     k = 0
     for i in range(lag.size):
         for j in range(i, lag.size):
-            a, b = lag[i], lag[j]
+            a, b = np.uintp(lag[i]), np.uintp(lag[j])
             total = 0.0
-            for row in range(weight.size):
-                own, part = seen[row], 0.0
+            for row in range(rows):
+                own, part = both[row], 0.0
                 for at in range(start[k], start[k + 1]):
-                    d = place[at]
-                    near = own[abs(d)] + own[d + b - a]
-                    c = own[abs(d - a)] + own[d + b] - near
-                    # Pairs of positions, and the squares of twice c.
-                    part += count[at] * (points - b - max(d, 0)) * c * c
-                total += 0.25 * weight[row] * part
+                    d = np.uintp(place[at])
+                    near = own[d] + own[d + b - a]
+                    c = own[d - a] + own[d + b] - near
+                    part += count[at] * c * c
+                total += weight[row] * part
                 k += 1
-            sums[i, j] = 2 * total / ((points - a) * (points - b))
+            sums[i, j] = total / (2 * (points - lag[i]) * (points - lag[j]))
             sums[j, i] = sums[i, j]
     return sums

@@ -147,7 +147,8 @@ def choose(problem: FractalProblem) -> Choice:
         negative, a gain by chance is half as frequent as for chi-squared: Self and
         Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
-    endless = _chosen(problem, *choose_instrument(problem, rolls_off=False))
+    straight = choose_instrument(problem, problem.straight(), rolls_off=False)
+    endless = _chosen(problem, *straight)
     criterion = endless.fit.likelihood_criterion
     nearest = Model(endless.fit.model.instrument, rolls_off=True)
     # A plateau at long lags is in the short tail of a skewed distribution: only its own
@@ -155,7 +156,8 @@ def choose(problem: FractalProblem) -> Choice:
     glance = settle(problem, nearest, endless.fit.seen)
     if endless.accepted and criterion - glance.likelihood_criterion < _CLEAR_CORNER:
         return endless
-    cornered = _chosen(problem, *choose_instrument(problem, rolls_off=True))
+    bent = choose_instrument(problem, glance.seen, rolls_off=True)
+    cornered = _chosen(problem, *bent)
     clear = criterion - cornered.fit.likelihood_criterion > _CLEAR_CORNER
     better = clear or (cornered.accepted and not endless.accepted)
     return cornered if better and cornered.ends_early else endless

@@ -33,14 +33,17 @@ def find_band(problem: FractalProblem) -> Choice | None:
         The accepted fit, or None where no decade is straight.
     """
     whole: dict[float, FloatArray] = {}
+    log_lag, log_value = np.log(problem.lag), np.log(problem.estimate.value)
     for keep in _windows(problem):
+        if _bent(log_lag[keep], log_value[keep]):
+            continue
         part = problem.within(keep)
         line = part.straight()
         exponent = EXPONENT_STEP * round(line.exponent / EXPONENT_STEP)
         if exponent not in whole:
             whole[exponent] = problem.scatter(SeenSurface(exponent, 1.0))
         scatter = whole[exponent][np.ix_(keep, keep)]
-        if _bent(part) or _pruned(part, scatter):
+        if _pruned(part, scatter):
             continue
         quick = choose_straight(part, weigh(part, line, scatter=scatter))
         if not (quick.accepted and judge(quick).scales):
@@ -51,11 +54,11 @@ def find_band(problem: FractalProblem) -> Choice | None:
     return None
 
 
-def _bent(problem: FractalProblem) -> bool:
+def _bent(log_lag: FloatArray, value: FloatArray) -> bool:
     """Return whether ln S departs from the line through it by more than the limit."""
-    log_lag, value = np.log(problem.lag), np.log(problem.estimate.value)
-    line = np.polyval(np.polyfit(log_lag, value, 1), log_lag)
-    return bool(np.max(np.abs(value - line)) > ROUGHLY_STRAIGHT)
+    place, rest = log_lag - log_lag.mean(), value - value.mean()
+    rest -= float(place @ rest) / float(place @ place) * place
+    return bool(np.abs(rest).max() > ROUGHLY_STRAIGHT)
 
 
 def _pruned(problem: FractalProblem, scatter: FloatArray) -> bool:

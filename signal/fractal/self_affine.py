@@ -11,18 +11,14 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.fractal.instrument_blur import (
     band_limited_power,
     blurred_power,
+    plain_power,
     tip_fall,
     traced_power,
 )
+from jointbench.signal.fractal.seen_forms import round_all
 
 TIP_TOLERANCE = 0.01
 """Relative error of `traced_power` for S of the mean path of simulated tips [-]."""
-_ROUNDING_TERMS = 6
-_WITHIN_ONE_STEP = 0.05
-"""S over the square of the step below which no difference exceeds one step [-]."""
-
-_MANY_STEPS = 2.0
-"""S over the square of the step above which the series is 1/6 to the last digit [-]."""
 
 
 class InstrumentModel(StrEnum):
@@ -105,83 +101,25 @@ class SeenSurface:
             lag: [samples], any shape; 0 gives 0.
         """
         lag = np.abs(np.asarray(lag, dtype=np.float64))
-        return self.seen_of(lag, form_of(lag, self.form))
-
-    @property
-    def form(self) -> "SeenForm":
-        """What the form of the structure function depends on."""
-        return (
-            self.exponent,
-            self.psf_width,
-            self.axes,
-            self.band_limited,
-            self.traced,
-        )
-
-    def seen_of(self, lag: FloatArray, shape: FloatArray) -> FloatArray:
-        """Return the structure function of a form.
-
-        Args:
-            lag: [samples], not negative, any shape.
-            shape: the form at these lags, see `form_of`.
-        """
+        shape = self._form(lag)
         if self.corner < math.inf:
             shape = rolled_off(shape, self.corner**self.exponent)
         seen: FloatArray = self.amplitude * shape + np.where(lag > 0, 2 * self.noise, 0)
-        return _rounded(seen, self.quantum) if self.quantum > 0 else seen
+        if self.quantum > 0:
+            flat = seen.ravel()
+            round_all(flat, self.quantum)
+            seen = flat.reshape(seen.shape)
+        return seen
 
-
-SeenForm = tuple[float, float, int, bool, bool]
-"""Exponent, width of the blur, axes, band limit, path of a tip; see `SeenSurface`."""
-
-
-def form_of(lag: FloatArray, form: SeenForm) -> FloatArray:
-    """Return the structure function of a surface of amplitude 1 without noise.
-
-    Args:
-        lag: [samples], not negative, any shape.
-        form: what it depends on.
-    """
-    exponent, width, axes, band_limited, traced = form
-    if width > 0 and traced:
-        return traced_power(lag, exponent, width)
-    if width > 0:
-        return blurred_power(lag, exponent, width, axes)
-    if band_limited:
-        return band_limited_power(lag, exponent, axes)
-    return np.asarray(lag**exponent)
-
-
-def _rounded(value: FloatArray, quantum: float) -> FloatArray:
-    """Return the structure function of quantised heights.
-
-    A Gaussian difference d of heights at a random position between two steps becomes a
-    whole number of steps with the mean square d^2 + q^2 f (1 - f), where f is the
-    fractional part of |d| / q; the mean of f (1 - f) is a Fourier series.
-
-    Args:
-        value: S of the heights before [m^2], any shape.
-        quantum: the step q [m], above 0.
-
-    Source:
-        Widrow and Kollar, Quantization Noise (2008), sec. 4 (characteristic function
-        of a quantised Gaussian).
-    """
-    share = np.maximum(value, 0.0) / quantum**2
-    added = np.full(share.shape, 1 / 6)
-    few = share < _MANY_STEPS
-    if few.any():
-        added[few] = _fraction(share[few])
-    return np.asarray(value + quantum**2 * added)
-
-
-def _fraction(share: FloatArray) -> FloatArray:
-    """Return the mean of f (1 - f) for S over the square of the step."""
-    order = np.arange(1.0, _ROUNDING_TERMS + 1)
-    decay = np.exp(-2 * np.pi**2 * np.multiply.outer(share, order**2))
-    fraction = 1 / 6 - np.sum(decay / (np.pi * order) ** 2, axis=-1)
-    near = np.sqrt(2 * share / np.pi) - share  # all differences within one step
-    return np.where(share < _WITHIN_ONE_STEP, near, fraction)
+    def _form(self, lag: FloatArray) -> FloatArray:
+        """Return the structure function of amplitude 1 without noise and corner."""
+        if self.psf_width > 0 and self.traced:
+            return traced_power(lag, self.exponent, self.psf_width)
+        if self.psf_width > 0:
+            return blurred_power(lag, self.exponent, self.psf_width, self.axes)
+        if self.band_limited:
+            return band_limited_power(lag, self.exponent, self.axes)
+        return plain_power(lag, self.exponent)
 
 
 def rolled_off(shape: FloatArray, ceiling: float) -> FloatArray:

@@ -38,11 +38,13 @@ class Kink:
         lag: at which S shows it, approximate [samples].
         slope_below: slope of ln S at shorter lags, approximate [-].
         slope_above: at longer lags, approximate [-].
+        gain: of chi2 by it [-].
     """
 
     lag: float
     slope_below: float
     slope_above: float
+    gain: float
 
 
 def find_kink(
@@ -82,7 +84,8 @@ def find_kink(
         if straight - left > best and abs(bend[2]) > _SMALLEST_BEND:
             best = straight - left
             below = seen.exponent - float(bend[1] + bend[2])
-            found = Kink(1 / knot, below, seen.exponent - float(bend[1]))
+            above = seen.exponent - float(bend[1])
+            found = Kink(1 / knot, below, above, best)
     return found
 
 

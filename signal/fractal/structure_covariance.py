@@ -12,9 +12,9 @@ zero, so its steps widen away from them: exact near them, at a cost that grows o
     the logarithm of the length.
 """
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +33,13 @@ EXACT_ROWS = 16
 """Single steps between rows [rows]."""
 ROW_GROWTH = 1.08
 """Ratio of neighbouring steps between rows beyond them [-]."""
-KEPT = 128
+_KEPT = 64
 """Surfaces whose covariance is kept: a search comes back to them [-]."""
+_SAME = 1e-3
+"""Difference of ln S, but for its mean, up to which two surfaces have one covariance
+[-]: chi2 changes by about as much."""
+_PROBES = 12
+"""Lags at which ln S of two surfaces is compared [-]."""
 
 Places = NDArray[np.uint32]
 """Indices without a sign: no check for a count from the end, half the memory."""
@@ -78,20 +83,32 @@ def structure_covariance(estimate: StructureFunction) -> Callable[[Seen], FloatA
     Returns:
         A function that takes a model of S (called with distances [m] of any shape)
         and returns cov(S_a, S_b) / (S(a) S(b)), shape (n_lags, n_lags) [-],
-        read-only. The last ones are kept: a model that is equal to one of them gets
-        its covariance.
+        read-only. The last ones are kept: a model of nearly the form of one of them
+        gets its covariance.
     """
     sums = [_sums_of(estimate.lag, sampling) for sampling in estimate.samplings]
+    farthest = max(s.points * s.spacing for s in estimate.samplings)
+    probes = np.geomspace(estimate.lag[0], farthest, _PROBES)
+    kept: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=_KEPT)
 
-    @lru_cache(maxsize=KEPT)
     def covariance(seen: Seen) -> FloatArray:
+        """Return the covariance of a model, or that of one of the same form."""
+        form = np.log(seen(probes))
+        form -= form.mean()
+        for known, found in reversed(kept):
+            if np.abs(form - known).max() < _SAME:
+                return found
+        kept.append((form, read_only(added_up(seen))))
+        return kept[-1][1]
+
+    def added_up(seen: Seen) -> FloatArray:
         """Add up the covariances of the contact surfaces, each with its share of S."""
         value = seen(estimate.lag)
         total = np.zeros((value.size, value.size))
-        for sampling, added_up in zip(estimate.samplings, sums, strict=True):
-            own = added_up(seen) / np.outer(value, value)
+        for sampling, part in zip(estimate.samplings, sums, strict=True):
+            own = part(seen) / np.outer(value, value)
             total += sampling.share**2 * _for_gaps(own, sampling, estimate.lag)
-        return read_only(total)
+        return total
 
     return covariance
 

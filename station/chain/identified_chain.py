@@ -9,28 +9,36 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.gap.chain.chain_records import (
     JointReading,
-    LinkTest,
     StructureReading,
 )
 from jointbench.analysis.gap.chain.joint_over_preload import BoltedStates
 from jointbench.analysis.gap.chain.moved_quantities import MovedModes, MovedStiffness
-from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
+from jointbench.analysis.structures.identification.body_faults import BodyFault
+from jointbench.analysis.structures.identification.identify_structure import (
+    StructureSearch,
+)
 from jointbench.analysis.structures.identification.joint_result import (
-    StateFit,
     StructureIdentification,
 )
-from jointbench.analysis.structures.reduction.reduced_model import solve_reduced
+from jointbench.analysis.structures.reduction.reduced_model import (
+    ReducedModel,
+    solve_reduced,
+)
+from jointbench.station.chain.fault_reading import modes_test, with_fault
 from jointbench.station.chain.read_chain import QUANTITY
+from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joint_states.joint_state_files import joint_facts
 from jointbench.station.joints.identify_run import (
     IdentifiedStructure,
     identified_structure,
 )
+from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.schemas.bolted_joint_table import BoltedLinkTable
 
+_SEARCH = StructureSearch(starts=16, profiles=False)
+"""Of the joint in every state: the chain takes the covariance at the optimum."""
 DIRECTION = {"normal": "normal", "tangential": "tangential_1"}
 """Direction of a meshed joint for that of the table [bolted_joint]."""
 
@@ -46,6 +54,7 @@ class IdentifiedChain:
         states: of the joint.
         reading: its stiffness, and the test of the structure.
         remarks: what was left out, and why, a line each.
+        fault: of a body that explains the modes, or None.
     """
 
     structure: IdentifiedStructure
@@ -54,6 +63,7 @@ class IdentifiedChain:
     states: BoltedStates
     reading: StructureReading
     remarks: tuple[str, ...]
+    fault: BodyFault | None = None
 
 
 def read_identified(
@@ -73,7 +83,7 @@ def read_identified(
     Raises:
         BadData: a session has no preload, or the joint is identifiable in no state.
     """
-    done = identified_structure(model, sessions)
+    done = identified_structure(model, sessions, search=_SEARCH)
     short = f"{table.link}.{DIRECTION[table.direction]}"
     kept, remarks = _identifiable(done.result, list(done.measured), short)
     if not kept:
@@ -89,9 +99,11 @@ def read_identified(
         _assemblies(sessions, labels),
         QUANTITY[table.direction],
     )
-    reading = StructureReading(_reading(done.result, list(kept.values())))
+    before = _reading(done.result, list(kept.values()))
+    names = [done.result.parameters[k].name for k in kept.values()]
+    reading, fault = with_fault(done, read_toml(model, StructureModel), before, names)
     column = done.reduced.names.index(short)
-    return IdentifiedChain(done, labels, column, states, reading, tuple(remarks))
+    return IdentifiedChain(done, labels, column, states, reading, tuple(remarks), fault)
 
 
 def _identifiable(
@@ -136,20 +148,10 @@ def _assemblies(sessions: Sequence[Path], labels: Sequence[str]) -> IntArray:
 
 def _reading(result: StructureIdentification, rows: list[int]) -> JointReading:
     """Return ln k of the states with the covariance of the identification."""
-    chi2, dof = result.solutions[0].chi2, result.degrees_of_freedom
-    limit = chi2_limit(CONTACT.fit_chance, dof) if dof > 0 else np.inf
-    passed = chi2 <= limit
-    words = "explains its modes with a free joint"
-    if not passed:
-        words = (
-            f"chi2 of its modes is {chi2:.0f}, the limit is {limit:.0f}; state what "
-            "the mesh is good for with identify.frequency_sd, or seek the effect with "
-            "`jointbench gap` without --surface"
-        )
     return JointReading(
         np.log([result.parameters[k].value for k in rows]),
         result.log_covariance[np.ix_(rows, rows)],
-        LinkTest(chi2, max(dof, 0), bool(passed), words),
+        modes_test(result.solutions[0].chi2, result.degrees_of_freedom),
     )
 
 
@@ -158,6 +160,8 @@ def moved_body_modes(
 ) -> tuple[MovedModes, ...]:
     """Return the natural frequencies of every state.
 
+    Those after hold the fault of a body that was named, too.
+
     Args:
         chain: of meshed bodies.
         stiffness: of the joint.
@@ -165,28 +169,50 @@ def moved_body_modes(
     fits = {one.label: one for one in chain.structure.result.states}
     found = []
     for k, label in enumerate(chain.labels):
-        fit = fits[label]
+        fit, reduced = fits[label], chain.structure.reduced
+        other, values = reduced, fit.stiffness
+        if chain.fault is not None:
+            other, values = chain.fault.state(label)
         found.append(
             MovedModes(
                 float(stiffness.preload[k]),
                 fit.measured,
-                _frequencies(chain, fit, float(stiffness.before[k])),
-                _frequencies(chain, fit, float(stiffness.after[k])),
+                _frequencies(
+                    *(reduced, fit.stiffness, chain.column),
+                    *(float(stiffness.before[k]), fit.predicted),
+                ),
+                _frequencies(
+                    *(other, values, chain.column),
+                    *(float(stiffness.after[k]), fit.predicted),
+                ),
             )
         )
     return tuple(found)
 
 
-def _frequencies(chain: IdentifiedChain, fit: StateFit, stiffness: float) -> FloatArray:
-    """Return the modes of the numbers that were measured, with another joint [Hz]."""
-    reduced = chain.structure.reduced
-    own = _elastic(chain, fit.stiffness)
-    number = [int(np.argmin(np.abs(own - one))) for one in fit.predicted]
-    values = fit.stiffness.copy()
-    values[chain.column] = min(stiffness, reduced.box[1])
-    return _elastic(chain, values)[number]
+def _frequencies(
+    reduced: ReducedModel,
+    fitted: FloatArray,
+    column: int,
+    stiffness: float,
+    paired: FloatArray,
+) -> FloatArray:
+    """Return the modes of the numbers that were measured, with another joint [Hz].
+
+    Args:
+        reduced: the structure.
+        fitted: stiffness of every direction in this state [N/m], shape (n,).
+        column: of the direction of the chain.
+        stiffness: of it instead [N/m].
+        paired: modes of the fit that were paired with the measured ones [Hz].
+    """
+    own = _elastic(reduced, fitted)
+    number = [int(np.argmin(np.abs(own - one))) for one in paired]
+    values = fitted.copy()
+    values[column] = min(stiffness, reduced.box[1])
+    return _elastic(reduced, values)[number]
 
 
-def _elastic(chain: IdentifiedChain, stiffness: FloatArray) -> FloatArray:
-    modes = solve_reduced(chain.structure.reduced, stiffness)
+def _elastic(reduced: ReducedModel, stiffness: FloatArray) -> FloatArray:
+    modes = solve_reduced(reduced, stiffness)
     return modes.natural_frequency[modes.rigid :]

@@ -55,7 +55,6 @@ from jointbench.station.gap.structure_plan import StructurePlan, read_plan
 from jointbench.station.gap.surface_gap import examine_surface
 from jointbench.station.gap.surface_gap_section import surface_gap_sections
 from jointbench.station.joint_states.joint_state_files import (
-    loops_of,
     names_states,
     read_joints,
 )
@@ -246,14 +245,15 @@ def _examine_joint(
             "--effects and --with do not apply to a joint over its preload"
         )
     progress("reading the states")
-    data, law = read_joints(paths)
-    done = diagnose_contact(data, law, without=wanted.without, progress=progress)
-    loops = loops_of(paths)
+    joint = read_joints(paths)
+    done = diagnose_contact(
+        joint.data, joint.law, without=wanted.without, progress=progress
+    )
     return Examined(
-        data.name,
+        joint.data.name,
         done.found,
-        remarks=tuple(one.words for one in loops),
-        sections=(*contact_sections(done), *loop_sections(loops)),
+        remarks=tuple(one.words for one in joint.loops),
+        sections=(*contact_sections(done), *loop_sections(joint.loops)),
     )
 
 

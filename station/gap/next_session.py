@@ -42,8 +42,8 @@ def run_next(
             "--plan plan.toml"
         )
     check_outputs([*joints, *([plan] if plan else [])], [out, json_target])
-    data, law = read_joints(joints)
-    done = diagnose_contact(data, law)
+    joint = read_joints(joints)
+    done = diagnose_contact(joint.data, joint.law)
     screen = console(json_target)
     screen.print(f"verdict: {done.found.verdict.value}", style="bold")
     screen.print(done.found.reason)
@@ -63,7 +63,7 @@ def run_next(
     if out is not None and plan is not None:
         if not done.experiments:
             raise UsageError("nothing is left to decide; no plan is written")
-        series = torque_series(data.states)[done.experiments[0].index]
+        series = torque_series(joint.data.states)[done.experiments[0].index]
         write_plan(plan, series, out)
         screen.print(f"plan: {out}", soft_wrap=True)
     write_json(json_target, _json(done))

@@ -34,7 +34,6 @@ from jointbench.station.joint_states.loop_states import (
     SetState,
     StateLoop,
     set_states,
-    state_loops,
 )
 from jointbench.station.joint_states.preload_law_tables import contact_law, modulus_of
 from jointbench.station.schemas.joint_states_model import (
@@ -77,6 +76,21 @@ class MeasuredValue:
     origin: tuple[IdentifiedParameters, str] | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class JointFile:
+    """A joint over its preload, as its files state it.
+
+    Attributes:
+        data: measured values and facts.
+        law: contact law.
+        loops: of force and displacement, in the order of files and states.
+    """
+
+    data: JointData
+    law: PreloadLaw
+    loops: tuple[StateLoop, ...] = ()
+
+
 def names_states(path: Path) -> bool:
     """Return whether a TOML file describes a joint over its preload."""
     try:
@@ -86,8 +100,8 @@ def names_states(path: Path) -> bool:
     return "law" in content and ("states" in content or "table" in content)
 
 
-def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
-    """Read the measured values of a joint, and its contact law.
+def read_joint(path: Path) -> JointFile:
+    """Read the measured values of a joint, its contact law and its loops.
 
     Args:
         path: of the TOML file; files that it names are beside it.
@@ -112,7 +126,9 @@ def read_joint(path: Path) -> tuple[JointData, PreloadLaw]:
         _states(states),
         _rows(values, states, _covariance(path, model, len(values))),
     )
-    return data, contact_law(model.law, model.bodies, facts)
+    law = contact_law(model.law, model.bodies, facts)
+    loops = tuple(one.loop for one in states if one.loop is not None)
+    return JointFile(data, law, loops)
 
 
 def _tables(model: JointStatesModel, folder: Path) -> tuple[JointStateTable, ...]:
@@ -121,23 +137,7 @@ def _tables(model: JointStatesModel, folder: Path) -> tuple[JointStateTable, ...
     return read_state_table(folder / model.table)
 
 
-def loops_of(paths: Sequence[Path]) -> list[StateLoop]:
-    """Return the loops of a joint, in the order of files and states.
-
-    Args:
-        paths: of TOML files.
-
-    Raises:
-        BadData: a file breaks a rule.
-    """
-    found: list[StateLoop] = []
-    for path in paths:
-        model = read_toml(path, JointStatesModel)
-        found += state_loops(_tables(model, path.parent), path.parent)
-    return found
-
-
-def read_joints(paths: Sequence[Path]) -> tuple[JointData, PreloadLaw]:
+def read_joints(paths: Sequence[Path]) -> JointFile:
     """Read the sessions of one joint as one; facts and law are those of the first.
 
     Args:
@@ -147,10 +147,12 @@ def read_joints(paths: Sequence[Path]) -> tuple[JointData, PreloadLaw]:
     Raises:
         BadData: a file breaks a rule.
     """
-    data, law = read_joint(paths[0])
-    for path in paths[1:]:
-        data = joined_data(data, read_joint(path)[0])
-    return data, law
+    first, *others = map(read_joint, paths)
+    data, loops = first.data, list(first.loops)
+    for one in others:
+        data = joined_data(data, one.data)
+        loops += one.loops
+    return JointFile(data, first.law, tuple(loops))
 
 
 def _states(states: tuple[SetState, ...]) -> JointStates:

@@ -67,28 +67,13 @@ class SetState:
         table: values and facts.
         setting: index of the state in the file.
         common_sd: sd of ln that all values of a loop share: its calibration [-].
+        loop: whose stiffness these values are; None for all others.
     """
 
     table: JointStateTable
     setting: int
     common_sd: float = 0.0
-
-
-def state_loops(states: tuple[JointStateTable, ...], folder: Path) -> list[StateLoop]:
-    """Read the loops that states name.
-
-    Args:
-        states: of a joint file.
-        folder: that holds the files.
-
-    Raises:
-        BadData: a file cannot be used, or holds no cycle that can be evaluated.
-    """
-    return [
-        _looped(state, folder / state.loop)
-        for state in states
-        if state.loop is not None
-    ]
+    loop: StateLoop | None = None
 
 
 def _looped(state: JointStateTable, path: Path) -> StateLoop:
@@ -111,8 +96,9 @@ def set_states(
         folder: that holds the files of loops.
 
     Raises:
-        BadData: a file cannot be used, or damping without its frequency stands beside
-            loops, whose damping has another one.
+        BadData: a file cannot be used, or holds no cycle that can be evaluated, or
+            damping without its frequency stands beside loops, whose damping has
+            another one.
     """
     found: list[SetState] = []
     for number, state in enumerate(states):
@@ -140,13 +126,13 @@ def _values(one: StateLoop, number: int) -> list[SetState]:
         "kt_sd": math.hypot(found.stiffness_sd, common),
         "shear": slip,
     }
-    rows = [stiff] + [
-        _damped(level, one.table) for level in found.levels if level.dissipates
-    ]
-    return [
-        SetState(one.table.model_copy(update=_NOT_LOOPED | row), number, common)
-        for row in rows
-    ]
+    damped = [_damped(level, one.table) for level in found.levels if level.dissipates]
+
+    def state(row: dict[str, object]) -> JointStateTable:
+        return one.table.model_copy(update=_NOT_LOOPED | row)
+
+    first = SetState(state(stiff), number, common, one)
+    return [first, *(SetState(state(row), number, common) for row in damped)]
 
 
 def _damped(level: LoopLevel, state: JointStateTable) -> dict[str, object]:

@@ -2,7 +2,7 @@
 """The joints of a meshed structure from sessions: the work, without the output."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
@@ -98,6 +98,7 @@ def identified_structure(
     cache: Path | None = None,
     surfaces: Sequence[Path] = (),
     options: FrfOptions | None = None,
+    search: StructureSearch | None = None,
 ) -> IdentifiedStructure:
     """Identify the joints of a structure.
 
@@ -110,6 +111,8 @@ def identified_structure(
         cache: folder that keeps reduced models.
         surfaces: files of the contact surfaces.
         options: what the user states about files that are no sessions.
+        search: settings, None for the defaults; masses of sensors are those of the
+            model.
 
     Raises:
         BadData: the model or a session cannot be used.
@@ -135,7 +138,10 @@ def identified_structure(
             sought=settings.identify.sought,
             shared=settings.identify.shared,
             priors=known_priors(settings.identify),
-            search=StructureSearch(masses=_masses(settings, structure, reduced)),
+            search=replace(
+                search or StructureSearch(),
+                masses=_masses(settings, structure, reduced),
+            ),
             structure=structure,
         )
     rows = _theory(settings, surface, preloads, result)

@@ -57,7 +57,7 @@ def reassembly_of(
         BadData: a file breaks a rule, or there is one assembly only.
         UsageError: a level has another quantity than those measured.
     """
-    data, _ = read_joints(joints)
+    data = read_joints(joints).data
     kind = "torque" if np.isfinite(data.states.torque).all() else "force"
     asked: FloatArray | None = None
     if level:

@@ -120,31 +120,48 @@ def integrated(
     slips = np.array([law.slips for law in sliding for _ in law.ports])
     weights = np.array([law.weights for law in sliding for _ in law.ports])
     sizes = np.array([law.size for law in sliding for _ in law.ports])
+    gradual = np.array(
+        [
+            np.arange(law.slips.size) >= law.slips.size - law.gradual
+            for law in sliding
+            for _ in law.ports
+        ],
+        dtype=bool,
+    ).reshape(slips.shape)
     held = sizes * k[ports]
     elastic = k.copy()
     elastic[ports] -= held
     times = np.arange(force.size) / RATE
     spline = scipy.interpolate.CubicSpline(times, force)
 
-    def held_force(motion: FloatArray, memory: FloatArray) -> FloatArray:
+    def held_force(
+        motion: FloatArray, memory: FloatArray, bent: FloatArray
+    ) -> FloatArray:
         stretch = np.clip(memory + motion[:, None], -slips, slips)
+        stretch = np.where(gradual, slips * bent, stretch)
         return np.asarray(held * np.sum(stretch * weights, axis=1))
 
     def rates(t: float, y: FloatArray, memory: FloatArray) -> FloatArray:
-        q, v = y[:n], y[n:]
+        q, v, bent = y[:n], y[n : 2 * n], y[2 * n :].reshape(slips.shape)
         joint = elastic * (rows @ q) + c * (rows @ v)
+        bending = np.zeros_like(slips)
         if sliding:
-            joint[ports] += held_force(rows[ports] @ q, memory)
+            joint[ports] += held_force(rows[ports] @ q, memory, bent)
+            # Bouc and Wen with an exponent of 2 and elastic unloading.
+            speed = (rows[ports] @ v)[:, None]
+            held_back = 0.5 * np.abs(bent) * (np.abs(bent) + bent * np.sign(speed))
+            bending = np.where(gradual, speed / slips * (1.0 - held_back), 0.0)
         for law in others:
             own = rows[list(law.ports)]
             joint[list(law.ports)] += _force(law, own @ q, own @ v)
         push = column * float(spline(t)) - joint @ rows
         push -= (foot * (feet @ q) + state.foot[1] * (feet @ v)) @ feet + ground @ q
-        return np.concatenate([v, inverse @ (push - stiff * q - lossy * v)])
+        moved = inverse @ (push - stiff * q - lossy * v)
+        return np.concatenate([v, moved, bending.ravel()])
 
     # Sliders remember where they stuck: between two samples the motion hardly turns.
-    y, memory = np.zeros(2 * n), np.zeros_like(slips)
-    moved = [rates(0.0, y, memory)[n:]]
+    y, memory = np.zeros(2 * n + slips.size), np.zeros_like(slips)
+    moved = [rates(0.0, y, memory)[n : 2 * n]]
     fine = np.linspace(0.0, times[-1], PARTS * (times.size - 1) + 1)
     for start, end in itertools.pairwise(fine):
         y = scipy.integrate.solve_ivp(
@@ -153,7 +170,7 @@ def integrated(
         if sliding:
             motion = (rows[ports] @ y[:n])[:, None]
             memory = np.clip(memory + motion, -slips, slips) - motion
-        moved.append(rates(end, y, memory)[n:])
+        moved.append(rates(end, y, memory)[n : 2 * n])
     # A stop has a kink, whose spectrum would fold back without a filter.
     fine_motion = sensors @ np.array(moved).T
     return FILTER(

@@ -2,10 +2,12 @@
 
 import signal
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.acquisition.records.session import JointSetup, Session
@@ -27,6 +29,14 @@ def heard_signals() -> Iterator[None]:
     yield
     for number, how in before.items():
         signal.signal(number, how)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def commands_made_once() -> Iterator[None]:
+    """Make the commands of an app once; Typer makes all of them for each call."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
+        yield
 
 
 def ringing(seed: int, *, hits: int = 2, bounce: float = 0.0) -> Recording:

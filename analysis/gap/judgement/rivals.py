@@ -38,14 +38,19 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
         for f in fits
         if score(bench, f) < best + near
         and not own < labels_of(f.candidates)
-        and not _generalises(f, fits[0])
+        and not generalises(f, fits[0])
     ]
 
 
-def _generalises(fit: Fit, best: Fit) -> bool:
-    """Return whether a fit differs from the best in one law, of which it has a case."""
-    more = [c for c in fit.candidates if c not in best.candidates]
-    special = [c for c in best.candidates if c not in fit.candidates]
+def generalises(fit: Fit, other: Fit) -> bool:
+    """Return whether a fit differs from another in one law, of which it has a case.
+
+    Args:
+        fit: with the more general law.
+        other: with its special case.
+    """
+    more = [c for c in fit.candidates if c not in other.candidates]
+    special = [c for c in other.candidates if c not in fit.candidates]
     return (
         len(more) == len(special) == 1
         and more[0].site == special[0].site

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Diagnosis of a joint over its preload: verdict and evidence."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,17 +19,13 @@ from jointbench.analysis.gap.contact_bench.joint_states import JointData
 from jointbench.analysis.gap.contact_bench.preload_law import PreloadLaw
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
-from jointbench.analysis.gap.judgement.fit_summaries import (
-    deviations_from_priors,
-    labels_of_fit,
-    largest_deviation,
-    ranked_fits,
-)
+from jointbench.analysis.gap.judgement.fit_summaries import largest_deviation
 from jointbench.analysis.gap.law_diagnosis.contact_search import search_contact
-from jointbench.analysis.gap.law_diagnosis.law_explanations import (
-    closest_refused,
-    named_effects,
-    verdict_on_level,
+from jointbench.analysis.gap.law_diagnosis.law_explanations import verdict_on_level
+from jointbench.analysis.gap.law_diagnosis.law_outcome import (
+    LawReport,
+    fit_shown,
+    law_diagnosis,
 )
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
@@ -122,50 +117,26 @@ def conclude_contact(outcome: SearchOutcome, bench: ContactBench) -> ContactDiag
         bench: of its fits.
     """
     verdict = contact_verdict(outcome, bench)
-    finding, base = verdict.finding, outcome.base
+    base, best = outcome.base, fit_shown(outcome, verdict.finding)
     experiments = _next(outcome, bench, verdict)
-    accepted = finding in (Finding.NAMED, Finding.AMBIGUOUS)
-    best = outcome.best if accepted else base
     before = hold_out_torques(bench, base)
     after = before if best is base else hold_out_torques(bench, best)
-    shown: Sequence[Fit] = ()
-    if accepted:
-        shown = (best,) if finding is Finding.NAMED else outcome.level
     sigma = np.sqrt(np.diag(bench.data.rows.covariance))
     charge = bench.policy.parameter_charge
-
-    def charged(fit: Fit) -> float:
-        return fit.cost + charge * (fit.x.size - fit.n_base)
-
-    found = Diagnosis(
-        verdict=finding,
-        effects=named_effects(outcome, bench, shown, charged),
-        candidates=ranked_fits(
-            bench,
-            [base, *outcome.ranked],
-            lambda f: f.cost / max(bench.blocks.dof, 1),
-        ),
-        gap_before=_gap(bench, base, before),
-        gap_after=_gap(bench, best, after),
-        prior_deviations=deviations_from_priors(bench.base_names, base, best),
-        base=_base_estimates(bench, best),
-        noise={
+    report = LawReport(
+        (_gap(bench, base, before), _gap(bench, best, after)),
+        _base_estimates(bench, best),
+        {
             "sigma_min": float(sigma.min()),
             "sigma_max": float(sigma.max()),
             "force_sigma_N": 0.0,
             "scatter_gain": bench.data.facts.torque_scatter,
             "scatter_joint": bench.data.facts.reassembly,
         },
-        null_statistic=(
-            outcome.base_screening.largest,
-            outcome.base_screening.threshold,
-        ),
-        experiment=advice(experiments) or verdict.step,
-        reason=verdict.reason,
-        explanations=tuple(labels_of_fit(f) for f in outcome.level if accepted),
-        policy=bench.policy,
-        closest=closest_refused(outcome, bench, finding, charged),
+        lambda fit: fit.cost + charge * (fit.x.size - fit.n_base),
     )
+    advised = replace(verdict, step=advice(experiments) or verdict.step)
+    found = law_diagnosis(outcome, bench, advised, report)
     return ContactDiagnosis(found, before, after, bench, base, best, experiments)
 
 

@@ -15,8 +15,8 @@ from jointbench.analysis.gap.contact_bench.contact_bench import ContactBench
 from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
-from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawCriteria, accept_law
+from jointbench.analysis.gap.law_diagnosis.law_outcome import TestedBase
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -50,22 +50,11 @@ def search_contact(bench: ContactBench, progress: Progress) -> SearchOutcome:
     screening = screen(bench, base, tested)
     first = accept_contact(bench, base, base, screening)
     if first.passed:
-        return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
+        return TestedBase(base, screening, first).complete(bench)
     fits = fit_each(bench, base, screening, progress)
     bench, base, fits = _again(bench, base, fits)
     judged = _judged(bench, base, fits)
-    best, acceptance = judged[0] if judged else (base, first)
-    near = [f for f, one in judged if one.passed]
-    return SearchOutcome(
-        bench=bench,
-        base=base,
-        base_acceptance=first,
-        base_screening=screening,
-        best=best,
-        acceptance=acceptance,
-        ranked=tuple(fits),
-        level=tuple(rivals(bench, near)),
-    )
+    return TestedBase(base, screening, first).outcome(bench, judged, fits)
 
 
 def _judged(

@@ -11,17 +11,15 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
-from jointbench.analysis.gap.judgement.fit_summaries import (
-    deviations_from_priors,
-    labels_of_fit,
-    largest_deviation,
-    ranked_fits,
-)
+from jointbench.analysis.gap.judgement.fit_summaries import largest_deviation
 from jointbench.analysis.gap.law_diagnosis.law_explanations import (
-    closest_refused,
-    named_effects,
     separating_steps,
     verdict_on_level,
+)
+from jointbench.analysis.gap.law_diagnosis.law_outcome import (
+    LawReport,
+    fit_shown,
+    law_diagnosis,
 )
 from jointbench.analysis.gap.law_diagnosis.surface_search import search_surface
 from jointbench.analysis.gap.model.diagnosis_record import (
@@ -126,44 +124,22 @@ def _conclude(
 ) -> SurfaceDiagnosis:
     """Derive the diagnosis from the outcome of a search."""
     verdict = surface_verdict(outcome, bench, tolerance)
-    finding, base = verdict.finding, outcome.base
-    accepted = finding in (Finding.NAMED, Finding.AMBIGUOUS, Finding.MOSTLY)
-    best = outcome.best if accepted else base
+    base, best = outcome.base, fit_shown(outcome, verdict.finding)
     before = hold_out_waves(bench, base)
     after = before if best is base else hold_out_waves(bench, best)
-    charged = partial(score, bench)
-    shown: Sequence[Fit] = ()
-    if accepted:
-        shown = outcome.level if finding is Finding.AMBIGUOUS else (best,)
-    found = Diagnosis(
-        verdict=finding,
-        effects=named_effects(outcome, bench, shown, charged),
-        candidates=ranked_fits(
-            bench,
-            [base, *outcome.ranked],
-            lambda f: f.cost / max(bench.blocks.dof, 1),
-        ),
-        gap_before=_gap(bench, base, before),
-        gap_after=_gap(bench, best, after),
-        prior_deviations=deviations_from_priors(bench.base_names, base, best),
-        base=base_estimates(bench, best),
-        noise={
+    report = LawReport(
+        (_gap(bench, base, before), _gap(bench, best, after)),
+        base_estimates(bench, best),
+        {
             "sigma_min": 1.0,
             "sigma_max": 1.0,
             "force_sigma_N": 0.0,
             "scatter_gain": 0.0,
             "scatter_joint": 0.0,
         },
-        null_statistic=(
-            outcome.base_screening.largest,
-            outcome.base_screening.threshold,
-        ),
-        experiment=verdict.step,
-        reason=verdict.reason,
-        explanations=tuple(labels_of_fit(f) for f in outcome.level if accepted),
-        policy=bench.policy,
-        closest=closest_refused(outcome, bench, finding, charged),
+        partial(score, bench),
     )
+    found = law_diagnosis(outcome, bench, verdict, report)
     names = [c.effect.name for c in best.candidates]
     return SurfaceDiagnosis(
         found,
@@ -173,7 +149,7 @@ def _conclude(
         base,
         best,
         outcome.level,
-        summary_word(finding, names),
+        summary_word(verdict.finding, names),
     )
 
 

@@ -2,19 +2,21 @@
 """Search for what a self-affine surface lacks to explain a measured one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
-from jointbench.analysis.gap.judgement.rivals import rivals
+from jointbench.analysis.gap.judgement.rivals import generalises
 from jointbench.analysis.gap.law_diagnosis.law_acceptance import LawCriteria, accept_law
+from jointbench.analysis.gap.law_diagnosis.law_outcome import TestedBase
 from jointbench.analysis.gap.model.effect import (
     Candidate,
     labels_of,
     may_join,
+    words_of,
 )
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -50,23 +52,13 @@ def search_surface(bench: SurfaceBench, progress: Progress) -> SearchOutcome:
     tested = [*bench.candidates, *bench.probes]
     screening = screen(bench, base, tested)
     first = accept_surface(bench, base, base, screening)
+    own = TestedBase(base, screening, first)
     if first.passed:
-        return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
+        return own.complete(bench)
     rounds = _Rounds(bench, base, first, progress)
     judged = rounds.grown(_ranked(bench, rounds.added(base, screening)))
-    fits = [fit for fit, _ in judged]
-    best, acceptance = judged[0] if judged else (base, first)
-    near = [f for f, one in judged if one.passed]
-    return SearchOutcome(
-        bench=bench,
-        base=base,
-        base_acceptance=first,
-        base_screening=screening,
-        best=best,
-        acceptance=acceptance,
-        ranked=tuple(sorted(fits, key=lambda f: score(bench, f))),
-        level=tuple(rivals(bench, near)) if acceptance.passed else (best,),
-    )
+    fits = sorted((fit for fit, _ in judged), key=lambda f: score(bench, f))
+    return own.outcome(bench, judged, fits)
 
 
 def fit_surface(
@@ -143,8 +135,26 @@ class _Rounds:
                 break
             rest = [c for c in tested if may_join(c, fit.candidates)]
             left = screen(bench, fit, rest)
-            found.append((fit, accept_surface(bench, fit, self.base, left)))
+            one = accept_surface(bench, fit, self.base, left)
+            found.append((fit, self._unless_outdone(fit, one, fits)))
         return sorted(found, key=lambda pair: not pair[1].passed)
+
+    def _unless_outdone(
+        self, fit: Fit, judged: Acceptance, fits: Sequence[Fit]
+    ) -> Acceptance:
+        """Refuse a law that a special case of it beats by score.
+
+        What it gains is less than its parameters cost: it bends to the residual of a
+        case that was refused for its shape.
+        """
+        bench = self.bench
+        limit = score(bench, fit) - bench.policy.rival_score
+        better = [f for f in fits if generalises(fit, f) and score(bench, f) < limit]
+        if not (judged.passed and better):
+            return judged
+        words = words_of(better[0].candidates)
+        reason = f"{words}, a case of it, has the better score and is refused"
+        return replace(judged, passed=False, unexplained=True, reason=reason)
 
 
 def _apart(candidate: Candidate, fit: Fit) -> bool:

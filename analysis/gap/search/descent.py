@@ -70,7 +70,7 @@ _NO_SLOPES = np.zeros((0, 0))
 
 def minimise(
     problem: FitProblem,
-    start: FloatArray,
+    start: FloatArray | Fit,
     resolution: Resolution = FULL,
     *,
     iterations: int = 20,
@@ -83,7 +83,8 @@ def minimise(
 
     Args:
         problem: least-squares problem.
-        start: coordinates, shape (n,).
+        start: coordinates, shape (n,); or a fit of nearly the same problem, whose
+            slopes are kept until a step fails.
         resolution: window and step of the residual.
         iterations: largest number of steps.
         rival: cost of the best fit so far; a descent that would need very many more
@@ -101,11 +102,14 @@ def minimise(
         coarse = problem.residual(x, jacobian_resolution)
         return jacobian_of(problem, x, coarse, jacobian_resolution)
 
-    x = np.clip(start, problem.lower, problem.upper)
+    known = start if isinstance(start, Fit) else None
+    x = start.x if isinstance(start, Fit) else start
+    x = np.clip(x, problem.lower, problem.upper)
     r, cost = _looked_at(problem, x, resolution)
     if not np.isfinite(cost):
         return _pruned(problem, x, r)
-    damping, age, j = SEARCH.least_damping, 0, slopes(x, r)
+    damping, age = SEARCH.least_damping, 0 if known is None else 1
+    j = slopes(x, r) if known is None else known.jacobian
     for k in range(iterations):
         ended = max(
             least_drop,
@@ -125,7 +129,7 @@ def minimise(
         guessed = near.predicted_drop(moved[0])
         change, before = moved[0] - x, r
         x, r, cost = moved
-        if small and age == 0:
+        if small and (age == 0 or known is not None):
             break
         if rival is not None and k >= 1 and cost - rival > SEARCH.patience * drop:
             break

@@ -200,14 +200,19 @@ class StructureBench:
         return (all if every else any)(c.effect.name in names for c in candidates)
 
     def may_add(self, candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
-        """Return whether an effect may be fitted beside others."""
+        """Return whether an effect may be fitted beside others.
+
+        Of two laws that are integrated in time, one is sought: each fit of a pair would
+        integrate both for every coordinate.
+        """
         names = {e.effect.name for e in self.entries if e.by_frequency}
         lonely = {e.effect.name for e in self.entries if e.alone}
         every = (candidate, *fitted)
         if fitted and any(c.effect.name in lonely for c in every):
             return False
         apart = any(c.effect.name in names for c in every) and self.nonlinear(every)
-        return may_join(candidate, fitted) and not apart
+        two = self.nonlinear((candidate,)) and self.nonlinear(fitted)
+        return may_join(candidate, fitted) and not apart and not two
 
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""

@@ -38,19 +38,43 @@ from jointbench.analysis.gap.structure_response.port_laws import (
 def _slide(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
-    share, largest, power, preload, onset = (float(v) for v in values)
+    share, largest, power, preload, onset, gradual = (float(v) for v in values)
     slips, weights = iwan_sliders(largest, power, onset)
     ports = tangential_ports(campaign, state, site)
-    laws = PortLaws(ports, share, slips, weights, preload=preload)
-    return replace(state, laws=(*state.laws, laws))
+    return _with_friction(state, ports, share, (slips, weights, gradual), preload)
 
 
 def _slip(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
-    share, slip, preload = (float(v) for v in values)
+    share, slip, preload, gradual = (float(v) for v in values)
     ports = tangential_ports(campaign, state, site)
-    laws = PortLaws(ports, share, np.array([slip]), np.ones(1), preload=preload)
+    sliders = np.array([slip]), np.ones(1), gradual
+    return _with_friction(state, ports, share, sliders, preload)
+
+
+def _with_friction(
+    state: JointState,
+    ports: tuple[int, ...],
+    share: float,
+    sliders: tuple[FloatArray, FloatArray, float],
+    preload: float,
+) -> JointState:
+    """Return a state with sliders at ports.
+
+    Args:
+        state: of the model.
+        ports: joint freedoms.
+        share: of the stiffness of the port that the sliders hold [-].
+        sliders: slip displacements [m], weights, and share of each that yields
+            gradually [-].
+        preload: power of the slip displacements in the bolt torque [-].
+    """
+    slips, weights, gradual = sliders
+    both = np.concatenate([(1.0 - gradual) * weights, gradual * weights])
+    laws = PortLaws(
+        ports, share, np.tile(slips, 2), both, preload=preload, gradual=slips.size
+    )
     return replace(state, laws=(*state.laws, laws))
 
 
@@ -75,6 +99,7 @@ def _iwan(values: FloatArray) -> tuple[Reported, ...]:
         Reported("chi", "-", float(values[2] - 2.0)),
         Reported("torque_exponent", "-", float(values[3])),
         Reported("onset", "-", float(values[4])),
+        Reported("gradual", "-", float(values[5])),
     )
 
 
@@ -97,6 +122,9 @@ _SEGALMAN = "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(c
 _SHARE = Parameter("share", "-", lower=0.0, upper=1.0, off=0.0)
 _PRELOAD = Parameter(
     "torque_exponent", "-", lower=-0.5, upper=2.0, starts=(0.0, 1.0), prior=(0.5, 1.0)
+)
+_GRADUAL = Parameter(
+    "gradual", "-", lower=0.0, upper=1.0, starts=(0.7,), prior=(0.5, 0.5)
 )
 LAW_EFFECTS: tuple[StructureEffect, ...] = (
     StructureEffect(
@@ -133,6 +161,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
                     transform=Transform.LOG,
                     prior=(0.05, 1.5),
                 ),
+                _GRADUAL,
             ),
             _SEGALMAN,
             report=_iwan,
@@ -159,6 +188,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
                     transform=Transform.LOG,
                 ),
                 _PRELOAD,
+                _GRADUAL,
             ),
             "Jenkins element: Gaul and Nitsche 2001, Appl. Mech. Rev. 54, 93",
             has_sliders=True,

@@ -23,6 +23,7 @@ class ActingLaws:
         gaps: clearance [m], shape (n_ports,).
         slips: slip displacement of each slider [m], shape (n_ports, n_sliders).
         weights: share of each slider in the stiffness, shape (n_ports, n_sliders).
+        sharp: number of sliders that yield at once, the first ones, shape (n_ports,).
         preload: power of the slip displacements in the torque [-], shape (n_ports,).
     """
 
@@ -32,12 +33,18 @@ class ActingLaws:
     gaps: FloatArray
     slips: FloatArray
     weights: FloatArray
+    sharp: IntArray
     preload: FloatArray
 
     @property
     def slides(self) -> bool:
-        """Whether all laws are friction, which ends where no slider slips again."""
+        """Whether all laws are friction."""
         return bool(np.all(self.kinds == LawForm.FRICTION))
+
+    @property
+    def rests(self) -> bool:
+        """Whether it ends where no slider slips again: gradual ones yield always."""
+        return self.slides and bool(np.all(self.sharp == self.slips.shape[1]))
 
 
 def acting_laws(bodies: JointedBodies, state: JointState, torque: float) -> ActingLaws:
@@ -55,7 +62,7 @@ def acting_laws(bodies: JointedBodies, state: JointState, torque: float) -> Acti
     spring = state.bolt[ports // 3] * torque / state.compliance[ports % 3]
     sizes = np.array([law.size for law in laws])
     count = max(law.slips.size for law in laws)
-    slips, weights = np.zeros((len(laws), count)), np.zeros((len(laws), count))
+    slips, weights = np.ones((len(laws), count)), np.zeros((len(laws), count))
     for k, law in enumerate(laws):
         slips[k, : law.slips.size] = law.slips
         weights[k, : law.weights.size] = law.weights
@@ -66,5 +73,6 @@ def acting_laws(bodies: JointedBodies, state: JointState, torque: float) -> Acti
         gaps=np.array([law.gap for law in laws]),
         slips=slips,
         weights=weights,
+        sharp=np.array([law.sharp if law.gradual else count for law in laws]),
         preload=np.array([law.preload for law in laws]),
     )

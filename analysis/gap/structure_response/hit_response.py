@@ -274,9 +274,9 @@ def law_forces(
             acting_laws(bodies, own, torque),
             columns[records],
             raw[records],
-            (hits.sample_rate * step, parts),
+            (parts, hits.filter, hits.sample_rate * step),
             preload[records],
         )
-        found[records] = frame.transform(hits.filter(forces))
+        found[records] = frame.transform(forces)
     found /= averaging(frame.s, hits.sample_rate * step, parts)
     return found

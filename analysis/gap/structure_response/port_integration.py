@@ -16,6 +16,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.structure_response.acting_laws import ActingLaws
 from jointbench.analysis.gap.structure_response.closed_modes import ClosedModes
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
 from jointbench.analysis.gap.structure_response.port_steps import integrate_hits
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
@@ -57,10 +58,10 @@ def integrate_laws(
     laws: ActingLaws,
     columns: FloatArray,
     force: FloatArray,
-    steps: tuple[float, int],
+    steps: tuple[int, CommonFilter, float],
     preload: FloatArray,
 ) -> FloatArray:
-    """Return the forces of laws beyond the linear springs of their ports.
+    """Return the filtered forces of laws beyond the linear springs of their ports.
 
     Hits are integrated side by side, hard ones together, since soft ones rest sooner.
 
@@ -69,14 +70,15 @@ def integrate_laws(
         laws: at its ports.
         columns: force row of each record in free modes, shape (n_records, n_modes).
         force: [N], shape (n_records, n_samples).
-        steps: sample rate [Hz], and steps per sample.
+        steps: steps per sample, the filter of the campaign, and the rate of the
+            samples before it [Hz].
         preload: torque of each record over the reference [-], shape (n_records,).
 
     Returns:
-        Force across each port [N], averaged about each sample as `averaging` states,
-        shape (n_records, n_ports, n_samples).
+        Force across each port [N], averaged about each sample as `averaging` states
+        and filtered, shape (n_records, n_ports, n_kept).
     """
-    rate, parts = steps
+    parts, common, rate = steps
     one = _steps(modes, laws.rows, 1.0 / (parts * rate))
     struck = _parts_of(modes.inputs @ columns.T)
     sharp = np.ascontiguousarray(_sharpened(force).T)
@@ -84,22 +86,27 @@ def integrate_laws(
     corrections = STRUCTURE.slider_corrections
     if not laws.slides:
         corrections = STRUCTURE.law_corrections
-    found = np.empty((len(force), len(laws.rows), force.shape[1]))
+    kept = -(-force.shape[1] // common.step)
+    found = np.empty((len(force), len(laws.rows), kept))
     for block in _side_by_side(force):
         out = np.zeros((force.shape[1], len(laws.rows), block.size))
         integrate_hits(
             (one.grow, one.early, one.late, one.curved, one.rest),
             (one.drive, one.shown, one.speeds, one.push, one.instant),
-            (laws.kinds, laws.sizes, laws.gaps, laws.slips, laws.weights),
+            (
+                *(laws.kinds, laws.sizes, laws.gaps),
+                *(laws.slips, laws.weights, laws.sharp),
+            ),
             np.ascontiguousarray(scale[:, block]),
             (
                 np.ascontiguousarray(struck[:, :, block]),
                 np.ascontiguousarray(sharp[:, block]),
             ),
-            (parts, corrections, STRUCTURE.rest_steps if laws.slides else 0),
+            (parts, corrections, STRUCTURE.rest_steps if laws.rests else 0),
             out,
         )
-        found[block] = out.transpose(2, 1, 0)
+        filtered = common.in_time(out.reshape(len(out), -1))
+        found[block] = filtered.reshape(kept, *out.shape[1:]).transpose(2, 1, 0)
     return found
 
 

@@ -30,6 +30,8 @@ class PortLaws:
             k3 [N/m^3], k2 [N/m^2] or c2 [N s^2/m^2], as the kind states.
         slips: displacement at which each slider slips [m], shape (n_sliders,).
         weights: share of each slider in them; they sum to 1, shape (n_sliders,).
+        gradual: number of sliders that yield gradually, the last ones; the others
+            yield at once.
         kind: of the law.
         gap: clearance of a stop [m].
         preload: power of the slip displacements in the bolt torque [-].
@@ -42,10 +44,16 @@ class PortLaws:
     kind: LawForm = LawForm.FRICTION
     gap: float = 0.0
     preload: float = 0.0
+    gradual: int = 0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "slips", "weights")
+
+    @property
+    def sharp(self) -> int:
+        """Number of sliders that yield at once."""
+        return self.slips.size - self.gradual
 
 
 def law_ports(laws: tuple[PortLaws, ...]) -> tuple[int, ...]:
@@ -60,22 +68,22 @@ def iwan_sliders(
 
     The stiffness below a slip displacement phi is (phi / largest)^power, as in the
     effect ``iwan`` of lumped joints. All of it below the onset is one slider, so that
-    smaller motions do not slip. Further cells are equally wide; a slider sits at the
-    mean slip displacement of its cell.
+    smaller motions do not slip. Further cells end at a constant ratio: soft hits slip
+    the weak sliders alone. A slider sits at the mean slip displacement of its cell.
 
     Args:
         largest: slip displacement [m].
         power: chi + 1 of Segalman's density [-], above 0; chi + 2 with the chi that
             `iwan` reports, which is one less.
         onset: end of the first cell over the largest slip displacement [-], below 1; 0
-            for a cell as wide as the others.
+            for one over the number of sliders.
 
     Source:
         Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1).
     """
     count = STRUCTURE.sliders
     first = onset if onset > 0.0 else 1.0 / count
-    edges = np.concatenate([[0.0], np.linspace(first, 1.0, count)])
+    edges = np.concatenate([[0.0], np.geomspace(first, 1.0, count)])
     weights = np.diff(edges**power)
     means = np.diff(edges ** (power + 1.0)) / weights * power / (power + 1.0)
     return largest * means, weights

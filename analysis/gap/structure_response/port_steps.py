@@ -11,8 +11,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
 
-_Laws = tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]
-"""Kinds, sizes, gaps, slips and weights of the ports."""
+_Laws = tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray]
+"""Kinds, sizes, gaps, slips, weights and number of sharp sliders of the ports."""
 _Steps = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """Factor of a step; what forces at its begin and its end move along straight lines, at
 its end along a parabola, and constant ones."""
@@ -23,31 +23,52 @@ _Ports = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 @compiled(fastmath=True)
 def _slide(
     size: float,
-    sliders: tuple[FloatArray, FloatArray],
+    sliders: tuple[FloatArray, FloatArray, int],
     motion: tuple[FloatArray, FloatArray, FloatArray],
     stretch: tuple[FloatArray, FloatArray],
     d: FloatArray,
 ) -> None:
     """Write the force of the sliders of one port, and their stretch.
 
+    A sharp slider holds up to its limit, then slips. A gradual one follows u' = r' /
+    phi (1 - |u| (|u| + u sgn r') / 2): elastic while it is unloaded, and along tanh
+    (r / phi) while it is loaded, by the addition formula of tanh; the tangent of a
+    step is its Pade approximant, exact to 1e-4 up to a half of phi.
+
     Args:
         size: stiffness of all of them [N/m].
-        sliders: slips and weights, shape (n_sliders,) each.
+        sliders: slips and weights, shape (n_sliders,) each, sharp ones first, and the
+            number of sharp ones.
         motion: of the port before and after the step, and scale of the slips, shape
             (n_hits,) each.
-        stretch: before the step, and after it (written), shape (n_hits, n_sliders).
+        stretch: before the step, and after it (written), shape (n_hits, n_sliders);
+            [m], of gradual sliders over their slip displacement.
         d: force beyond the linear spring (written), shape (n_hits,).
     """
-    slips, weights = sliders
+    slips, weights, sharp = sliders
     old, new, scale = motion
     before, after = stretch
     for h in range(d.size):
         moved, held, own = new[h] - old[h], 0.0, scale[h]
-        for i in range(slips.size):
+        for i in range(sharp):
             limit = own * slips[i]
             e = min(max(before[h, i] + moved, -limit), limit)
             after[h, i] = e
             held += weights[i] * e
+        pace = moved / own
+        for i in range(sharp, slips.size):
+            u, s = before[h, i], pace / slips[i]
+            turned = u * s < 0.0
+            elastic = turned and abs(s) <= abs(u)
+            rest = s + u if turned else s
+            start = 0.0 if turned else u
+            square = rest * rest
+            turn = rest * (15.0 + square) / (15.0 + 6.0 * square)
+            turn = min(max(turn, -1.0), 1.0)
+            loaded = (start + turn) / (1.0 + start * turn)
+            u = rest if elastic else loaded
+            after[h, i] = u
+            held += own * slips[i] * weights[i] * u
         d[h] = size * (held - new[h])
 
 
@@ -62,20 +83,20 @@ def _port_forces(
     """Write the force of each law, and the stretch of its sliders.
 
     Args:
-        laws: kinds, sizes, gaps, slips and weights.
+        laws: kinds, sizes, gaps, slips, weights and number of sharp sliders.
         scale: of the slips of each port, shape (n_ports, n_hits).
         motion: of the ports before and after the step, and velocity after it.
         stretch: of the sliders before the step, and after it (written), shape
             (n_ports, n_hits, n_sliders).
         d: force of each port (written), shape (n_ports, n_hits).
     """
-    kinds, sizes, gaps, slips, weights = laws
+    kinds, sizes, gaps, slips, weights, sharp = laws
     old, new, speed = motion
     before, after = stretch
     for p in range(d.shape[0]):
         size, gap, r, v, out = sizes[p], gaps[p], new[p], speed[p], d[p]
         if kinds[p] == 0:
-            own = (slips[p], weights[p])
+            own = (slips[p], weights[p], sharp[p])
             _slide(size, own, (old[p], r, scale[p]), (before[p], after[p]), out)
         elif kinds[p] == 1:
             for h in range(out.size):

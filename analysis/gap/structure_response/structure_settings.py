@@ -26,11 +26,11 @@ class StructureSettings:
         "less than the floor",
     )
     slider_steps: tuple[int, int] = numerical(
-        (1, 4),
+        (1, 2),
         "steps/sample",
         "steps of the time integration per raw sample where all laws are friction: in "
         "fits, and in what is judged",
-        "errors over the peak: 9e-5 and 6e-6 for slip of whole bolts, 2e-5 and 2e-6 "
+        "errors over the peak: 9e-5 and 2e-5 for slip of whole bolts, 2e-5 and 4e-6 "
         "for micro-slip",
     )
     law_steps: tuple[int, int] = numerical(
@@ -63,10 +63,10 @@ class StructureSettings:
         "one product moves all ports and modes of them; soft hits end sooner",
     )
     sliders: int = numerical(
-        24,
+        12,
         "sliders",
-        "sliders of an Iwan element at a port",
-        "a prototype on 24 campaigns",
+        "sliders of an Iwan element at a port, each in a sharp and a gradual share",
+        "24 sharp ones in a prototype; gradual ones are smooth by themselves",
     )
     law_slope_step: float = numerical(
         1e-5,
@@ -184,6 +184,14 @@ class StructureSettings:
         "steps of such a fit at the end, with the time integration that is judged",
         "the coarser one moves parameters by a part of their sd",
     )
+    law_drop: float = numerical(
+        3e-4,
+        "chi2 per sample",
+        "drop of the cost below which a fit with an integrated law ends before it is "
+        "fitted with the time integration that is judged",
+        "30 units of chi2 of twelve hits: the steps that follow, on all hits, separate "
+        "rivals",
+    )
     whole_iterations: int = numerical(
         8, "steps", "most steps of a fit to whole records in one round"
     )
@@ -211,6 +219,13 @@ class StructureSettings:
         "best single effects to which a second one is added where none of them "
         "explains the hits",
         "a pair of effects of one size leads by one of them",
+    )
+    law_pairs: int = numerical(
+        1,
+        "pairs",
+        "pairs with an integrated law that are fitted to whole records",
+        "about sixty integrations of twelve hits and as many of all hits: half a "
+        "minute to a minute each",
     )
     longer_fits: int = numerical(
         5, "fits", "fits carried to a longer window", "a prototype on 24 campaigns"

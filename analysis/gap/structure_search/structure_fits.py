@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
@@ -21,17 +21,8 @@ from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_sl
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
+from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
-
-
-def one_of_each(hits: HitRecords) -> IntArray:
-    """Return the first record of each combination of point, torque and level."""
-    seen: dict[tuple[float, ...], int] = {}
-    for k in range(len(hits.names)):
-        key = (float(hits.point[k]), float(hits.torque[k]), float(hits.level[k]))
-        seen.setdefault(key, k)
-    return np.array(sorted(seen.values()), dtype=np.int64)
 
 
 def approached(
@@ -46,13 +37,37 @@ def approached(
         start: base coordinates, then those of the effects.
         candidates: effects.
     """
+    few, fit = in_windows(few, start, candidates)
+    return in_full(few, fit)
+
+
+def in_windows(
+    few: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    rival: float | None = None,
+) -> tuple[StructureBench, Fit]:
+    """Fit one record of each condition in windows; one far off in the first alone.
+
+    Args:
+        few: one record of each condition.
+        start: base coordinates, then those of the effects.
+        candidates: effects.
+        rival: cost per row of the best fit so far, which a descent should reach.
+    """
     x = start
     for window in STRUCTURE.approach_windows:
-        few, fit = _settled_in(few, x, candidates, Resolution(window))
+        few, fit = _settled_in(few, x, candidates, Resolution(window), rival=rival)
         x = fit.x
         if not near_records(few, fit):
             break
-    return _settled_in(few, x, candidates, FULL)
+    return few, fit
+
+
+def in_full(few: StructureBench, fit: Fit) -> tuple[StructureBench, Fit]:
+    """Fit one record of each condition whole, from a fit in windows."""
+    return _settled_in(few, fit.x, fit.candidates, FULL)
 
 
 def near_records(bench: StructureBench, fit: Fit) -> bool:
@@ -65,9 +80,13 @@ def _settled_in(
     x: FloatArray,
     candidates: Sequence[Candidate],
     window: Resolution,
+    *,
+    rival: float | None = None,
 ) -> tuple[StructureBench, Fit]:
     """Fit a window, in turn with where each hit landed."""
+    rows = _rows(few, window)
     landing = few.landing
+    last: Fit | None = None
     for k in range(STRUCTURE.approach_rounds):
         terms = split(x, few.base_sd.size, candidates)
         few = few.at(x[: few.base_sd.size], terms, landing, few.floor)
@@ -75,18 +94,37 @@ def _settled_in(
         before = cost_at(problem, x, window)
         fit = minimise(
             problem,
-            x,
+            x if last is None else last,
             window,
             iterations=STRUCTURE.approach_iterations,
+            rival=None if rival is None else rival * rows,
             exact_slopes=False,
+            least_drop=_least_drop(few, candidates, window),
         )
         x = fit.x
+        # With laws, slopes cost more than all else: those of the last round do.
+        last = fit if few.nonlinear(candidates) else None
         if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
             break
         if not near_records(few, fit):
             break
         landing, _ = few.landed(fit.base, fit.terms, window.window)
     return few, fit
+
+
+def _least_drop(
+    bench: StructureBench, candidates: Sequence[Candidate], window: Resolution
+) -> float:
+    """Return the drop of the cost below which a fit with laws need not continue."""
+    if not bench.nonlinear(candidates):
+        return 0.0
+    return STRUCTURE.law_drop * _rows(bench, window)
+
+
+def _rows(bench: StructureBench, window: Resolution) -> int:
+    """Return the samples of all records in a window."""
+    records, channels, _ = bench.blocks.shape
+    return records * channels * window_count(bench.campaign.hits, window.window)
 
 
 def settled(
@@ -113,9 +151,12 @@ def settled(
         if near:
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        # Slopes of all records are the largest array there is: none are kept twice.
-        fit = without_slopes(fit)
-        before, fit = fit.cost, _whole(bench, fit.x, candidates, exact=near)
+        law = bench.nonlinear(candidates)
+        if not law:
+            # Slopes of all records are the largest array there is: none are kept twice.
+            fit = without_slopes(fit)
+        before = fit.cost
+        fit = _whole(bench, fit if law else fit.x, candidates, exact=near and not law)
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
         if before - fit.cost < least * fit.cost:
             break
@@ -167,7 +208,7 @@ def fitted_finely(
 
 def _whole(
     bench: StructureBench,
-    start: FloatArray,
+    start: FloatArray | Fit,
     candidates: Sequence[Candidate],
     *,
     exact: bool = False,
@@ -179,6 +220,7 @@ def _whole(
         FULL,
         iterations=STRUCTURE.whole_iterations,
         exact_slopes=exact,
+        least_drop=_least_drop(bench, candidates, FULL),
     )
 
 

@@ -28,6 +28,10 @@ from jointbench.analysis.gap.search.screening import Screening
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.records_of_search import (
+    one_of_each,
+    torques_in_turn,
+)
 from jointbench.analysis.gap.structure_search.short_windows import (
     SHORT,
     carried,
@@ -37,7 +41,6 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     approached,
     fitted_finely,
-    one_of_each,
     settled,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
@@ -83,6 +86,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     if first.passed:
         return _complete(whole, base, first, UNTESTED)
     progress("directed tests")
+    few = few.chosen(torques_in_turn(few.campaign.hits))
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
@@ -114,7 +118,14 @@ def _with_a_second(
         near = minimise(problem, first.x, SHORT, iterations=STRUCTURE.short_iterations)
         pairs += carried(own, near, tested(own, near), progress)
     different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
-    return _best_first(few, list(different.values()))
+    return affordable(few, _best_first(few, list(different.values())))
+
+
+def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:
+    """Return pairs for whole records: few with a law, which is integrated there."""
+    laws = [f for f in pairs if few.nonlinear(f.candidates)]
+    left = laws[STRUCTURE.law_pairs :]
+    return [f for f in pairs if all(f is not one for one in left)]
 
 
 def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:

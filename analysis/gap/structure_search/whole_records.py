@@ -4,6 +4,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
@@ -12,7 +14,8 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
-    approached,
+    in_full,
+    in_windows,
     near_records,
     settled,
 )
@@ -25,6 +28,10 @@ class JudgedFit:
     bench: StructureBench
     fit: Fit
     acceptance: Acceptance
+
+
+_Found = tuple[StructureBench, Fit]
+"""A fit with the bench on which it was found."""
 
 
 def in_whole_records(
@@ -46,13 +53,16 @@ def in_whole_records(
         progress: receives one line for each fit.
     """
     few = replace(few, reach=bench.reach)
-    near: list[tuple[StructureBench, Fit]] = []
-    for fit in _worth_it(carried):
-        explained = any(_explains(one) for one in near)
-        if explained and fit.cost > STRUCTURE.explained_cost_ratio * carried[0].cost:
+    met = _met_in_windows(few, carried, progress)
+    near: list[_Found] = []
+    for own, fit in met:
+        limit = STRUCTURE.whole_cost_ratio
+        if any(_explains(one) for one in near):
+            limit = STRUCTURE.explained_cost_ratio
+        if _cost_per_row(fit) > limit * _cost_per_row(met[0][1]):
             continue
         progress(f"{words_of(fit.candidates)} in whole records")
-        own, found = approached(few, fit.x, fit.candidates)
+        own, found = in_full(own, fit)
         near.append((own, without_slopes(found)))
     near.sort(key=lambda one: one[1].cost)
     done: list[JudgedFit] = []
@@ -70,20 +80,53 @@ def in_whole_records(
     return done
 
 
-def _explains(found: tuple[StructureBench, Fit]) -> bool:
+def _met_in_windows(
+    few: StructureBench, carried: Sequence[Fit], progress: Progress
+) -> list[_Found]:
+    """Fit candidates in windows, each hit met where it landed, best first.
+
+    Before that, the linear model of where hits landed decides between laws: friction
+    that slips as a whole left ten times the chi2 of a wrong law.
+    """
+    found: list[_Found] = []
+    rival: float | None = None
+    for fit in worth_it(few, carried):
+        progress(f"{words_of(fit.candidates)} where hits landed")
+        own, met = in_windows(few, fit.x, fit.candidates, rival=rival)
+        rival = min(_cost_per_row(met), rival or np.inf)
+        found.append((own, without_slopes(met)))
+    return sorted(found, key=lambda one: _cost_per_row(one[1]))
+
+
+def _cost_per_row(fit: Fit) -> float:
+    """Return the cost over the rows: a fit far off has those of the first window."""
+    return fit.cost / fit.residual.size
+
+
+def _explains(found: _Found) -> bool:
     """Return whether a fit explains one record of each condition."""
     bench, fit = found
     limit = bench.policy.floor_chi2 * fit.residual.size
     return fit.chi2 * bench.coherence < limit
 
 
-def _worth_it(carried: Sequence[Fit]) -> list[Fit]:
-    """Return the fits that may be the best over whole records."""
+def worth_it(few: StructureBench, carried: Sequence[Fit]) -> list[Fit]:
+    """Return the fits that may be the best over whole records.
+
+    Laws of the family of the best one take their turn, however far they seem.
+    """
     if not carried:
         return []
-    best = carried[0].cost
-    return [
+    best = carried[0]
+    family = {c.effect.family for c in best.candidates if few.nonlinear((c,))}
+    near = [
         f
         for f in carried[: STRUCTURE.whole_fits]
-        if f.cost < STRUCTURE.whole_cost_ratio * best
+        if f.cost < STRUCTURE.whole_cost_ratio * best.cost
     ]
+    turn: dict[frozenset[str], Fit] = {}
+    for fit in carried:
+        laws = [c for c in fit.candidates if few.nonlinear((c,))]
+        if laws and {c.effect.family for c in laws} <= family:
+            turn.setdefault(frozenset(c.effect.name for c in fit.candidates), fit)
+    return near + [f for f in turn.values() if all(f is not one for one in near)]

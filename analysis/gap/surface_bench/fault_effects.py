@@ -120,7 +120,8 @@ def _filled() -> Effect:
             Parameter("share", "-", "filled", 0.0, 3.0, off=0.0, far=(1.0,)),
             Parameter("white", "m^2", "floor", -1.0, 20.0, starts=(0.0,)),
             free_shape("bend_skewness"),
-            free_shape("bend_kurtosis", -1.0),
+            # Dropouts far off the line: at most ln of the number of points.
+            free_shape("bend_kurtosis", -1.0, 12.0),
             free_shape("skewness"),
         ),
         source="straight runs and repeated heights, which no rough surface has",

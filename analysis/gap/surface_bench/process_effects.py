@@ -4,6 +4,7 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtr
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Effect
@@ -12,6 +13,7 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
+from jointbench.analysis.gap.surface_bench.cut_surface import cut_surface
 from jointbench.analysis.gap.surface_bench.shape_rows import ShapeRow
 from jointbench.analysis.gap.surface_bench.surface_effect import SurfaceEffect
 from jointbench.analysis.gap.surface_bench.surface_rows import SurfaceRows
@@ -60,16 +62,16 @@ def _crosses(
 
 def _cut(values: FloatArray, state: SurfaceState, sample: LineSample) -> SurfaceState:
     """Leave the valleys of one process and the finish of another between them."""
-    roll_off, finish, fine, skewness, bend, kurtosis = (float(v) for v in values)
+    roll_off, short, level, finish, fine, bend, kurtosis = map(float, values)
     process = replace(state.process, roll_off=roll_off / sample.pitch)
     corner = fine / sample.pitch
-    level = finish / sample.scale**2
-    pivot = 2 * np.pi / corner
-    added = BandLimited(
-        level * corner / (4 * np.pi**2), pivot, SURFACE.finish_hurst, corner
-    )
-    state = replace(state, process=process, finish=added)
-    state = state.shifted(ShapeRow.SKEWNESS, skewness)
+    # Of H = 1/2 and a variance: variance * corner / (4 pi^2) at the corner.
+    height = finish / sample.scale**2 * corner / (4 * np.pi**2)
+    added = BandLimited(height, 2 * np.pi / corner, SURFACE.finish_hurst, corner)
+    valleys = replace(process, blur=(short / sample.pitch) ** 2)
+    cut = cut_surface(valleys, added, level)
+    state = replace(state, process=process, cut=cut)
+    state = state.shifted(ShapeRow.SKEWNESS, float(np.arcsinh(cut.skewness)))
     state = state.shifted(ShapeRow.BEND_SKEWNESS, bend)
     return state.shifted(ShapeRow.BEND_KURTOSIS, kurtosis)
 
@@ -147,17 +149,18 @@ def _plateau(least: float) -> Effect:
         "process",
         (
             wavelength("rolloff", least, 0.3, (0.01, 0.03)),
+            wavelength("short_cut", 0.003 * least, 0.03, (0.00002, 0.0006)),
+            Parameter("level", "-", lower=-2.5, upper=2.5, starts=(-0.4,)),
             Parameter(
                 "finish",
                 "m^2",
                 "variance",
                 1e-9,
-                3.0,
+                1.0,
                 starts=(0.0003, 0.02),
                 transform=Transform.LOG,
             ),
-            wavelength("finish_rolloff", least / 6.0, 30.0, (0.002, 0.03)),
-            free_shape("skewness"),
+            wavelength("finish_rolloff", least / 6.0, 0.3, (0.002, 0.02)),
             free_shape("bend_skewness", -1.5, 1.5),
             free_shape("bend_kurtosis", -1.0, 3.0),
         ),
@@ -166,10 +169,10 @@ def _plateau(least: float) -> Effect:
         separates={"second_process": "a second place: skewness of the heights"},
         report=lambda values: (
             Reported("rolloff", "m", float(values[0])),
-            Reported("finish_rms", "m", float(np.sqrt(max(values[1], 0.0)))),
-            Reported("finish_rolloff", "m", float(values[2])),
+            Reported("plateau_share", "-", float(ndtr(-values[2]))),
+            Reported("finish_rms", "m", float(np.sqrt(max(values[3], 0.0)))),
+            Reported("finish_rolloff", "m", float(values[4])),
         ),
-        model_error=SURFACE.plateau_error,
         refit_nominal=True,
         generalises=("rolloff", "second_process"),
     )

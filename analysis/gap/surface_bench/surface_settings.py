@@ -65,13 +65,6 @@ class SurfaceBenchSettings:
         "is known to 10 %",
         _SWEPT,
     )
-    plateau_error: float = decision(
-        0.05,
-        "of the excess",
-        "the same of a plateau",
-        "cut surfaces, seeds below 100: the lower of two processes is no sum of them",
-        _SWEPT,
-    )
     marks_error: float = decision(
         1e-4,
         "of the excess",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.surface_bench.cut_surface import CutSurface
 from jointbench.analysis.gap.surface_bench.surface_settings import SURFACE
 from jointbench.signal.band_limited.known_transfer import KnownTransfer
 from jointbench.signal.band_limited.matern_spectrum import BandLimited
@@ -43,7 +44,7 @@ class SurfaceState:
         process: self-affine, with its roll-off; its blur is Gaussian.
         tip: square of the width of the path of a tip [samples^2].
         crossover: to a second law, or None.
-        finish: a second process that is added, or None.
+        cut: what is left of the process and a finish by a cut, or None.
         noise: variance of each height.
         step: of a converter; 0 for none.
         form: coefficients of Legendre polynomials of degree 2 and 3.
@@ -55,7 +56,7 @@ class SurfaceState:
     process: BandLimited
     tip: float = 0.0
     crossover: Crossover | None = None
-    finish: BandLimited | None = None
+    cut: CutSurface | None = None
     noise: float = 0.0
     step: float = 0.0
     form: tuple[float, float] = (0.0, 0.0)
@@ -71,11 +72,10 @@ class SurfaceState:
 
     def density(self, omega: FloatArray) -> FloatArray:
         """Return the two-sided density before sampling, at any wavenumber."""
-        found = self.process.surface(omega)
+        surface = self.process if self.cut is None else self.cut
+        found = surface.surface(omega)
         if self.crossover is not None:
             found = found * self.crossover.factor(omega)
-        if self.finish is not None:
-            found = found + self.finish.surface(omega)
         found = found * self.process.short_cut(omega, tip=False)
         if self.tip > 0:
             traced = replace(self.process, blur=self.tip)

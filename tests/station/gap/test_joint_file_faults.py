@@ -108,5 +108,6 @@ def test_a_value_has_no_correlation_with_itself(tmp_path: Path) -> None:
 
 def test_exactly_known_facts_stay_in_the_fit(tmp_path: Path) -> None:
     """An sd of 0 of the nut factor and of the torque leaves all slopes finite."""
-    bench = make_contact_bench(*read_joint(_file(tmp_path, JOINT)))
+    joint = read_joint(_file(tmp_path, JOINT))
+    bench = make_contact_bench(joint.data, joint.law)
     assert np.all(bench.base_sd > 0)

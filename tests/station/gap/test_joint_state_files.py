@@ -12,7 +12,6 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.station.examples.example_sets import write_example
 from jointbench.station.gap.gap_inputs import GapRequest, examine
 from jointbench.station.joint_states.joint_state_files import (
-    loops_of,
     names_states,
     read_joint,
 )
@@ -81,7 +80,8 @@ def test_states_bounds_correlations_and_identifications_are_read(
     """Values in SI, bounds as bounds, what is not known at all left out."""
     path = _written(tmp_path, HEAD + STATES)
     assert names_states(path)
-    data, law = read_joint(path)
+    joint = read_joint(path)
+    data, law = joint.data, joint.law
     rows = data.rows
     np.testing.assert_allclose(np.exp(rows.value), [1e9, 400.0, 5e9, 2e9, 4e9])
     assert rows.bound.tolist() == [False, False, True, False, True]
@@ -103,7 +103,7 @@ def test_a_table_and_a_covariance_are_read(tmp_path: Path) -> None:
     )
     (tmp_path / "covariance.csv").write_text("0.01,0.002\n0.002,0.02\n")
     top = 'table = "states.csv"\ncovariance = "covariance.csv"\n'
-    data, _ = read_joint(_written(tmp_path, top + HEAD))
+    data = read_joint(_written(tmp_path, top + HEAD)).data
     np.testing.assert_allclose(np.exp(data.rows.value), [1e9, 3e9])
     np.testing.assert_allclose(data.rows.covariance, [[0.01, 0.002], [0.002, 0.02]])
     assert data.rows.state.tolist() == [0, 2]
@@ -170,9 +170,10 @@ def test_a_loop_is_stiffness_and_damping_of_one_setting(
     """kt, then ct by amplitude; their calibration is common to them."""
     state = 'torque = "9 N m"\nkn = "2e9 N/m"\nloop = "loop.csv"\nloop_sd = "2 %"\n'
     path = _with_loop(tmp_path, loops, state + 'frequency = "0.1 Hz"')
-    data, _ = read_joint(path)
+    joint = read_joint(path)
+    data = joint.data
     rows, states = data.rows, data.states
-    (loop,) = loops_of([path])
+    (loop,) = joint.loops
     own = rows.state >= 3
     assert rows.quantity[own].tolist() == [0, 1, 5, 5, 5]
     assert states.settings[rows.state[own]].tolist() == [3, 3, 3, 3, 3]
@@ -254,7 +255,7 @@ def test_values_of_one_identification_have_its_correlation(tmp_path: Path) -> No
     covariance = [[0.0025, -0.004, 0.0], [-0.004, 0.01, 0.0], [0.0, 0.0, 1.0]]
     result["log_covariance"] = covariance
     (tmp_path / "joint.json").write_text(json.dumps(result), encoding="utf-8")
-    rows = read_joint(path)[0].rows
+    rows = read_joint(path).data.rows
     assert rows.quantity[-2:].tolist() == [0, 1]
     sd = np.sqrt(np.diag(rows.covariance))
     factor = rows.covariance[-2, -1] / (sd[-2] * sd[-1])

@@ -99,16 +99,22 @@ FOUR_LAWS = (
 )
 
 
-@pytest.mark.parametrize("others", [(), FOUR_LAWS])
+@pytest.mark.parametrize(("others", "gradual"), [((), True), (FOUR_LAWS, False)])
 def test_laws_at_four_bolts_are_those_of_an_integrator(
-    others: tuple[PortLaws, ...],
+    others: tuple[PortLaws, ...], gradual: bool
 ) -> None:
-    """Sliders at eight ports, alone and beside four normal laws, agree to 1e-4."""
+    """Sliders at eight ports, alone and beside four normal laws, agree to 1e-4.
+
+    Alone, a part of each yields gradually, as the law of Bouc and Wen does.
+    """
     made = campaign()
     slips, weights = iwan_sliders(1e-6, 1.6)
     ports = tuple(3 * k + d for k in range(4) for d in (0, 1))
     linear = state_at(made)
     slides = PortLaws(ports, 0.5, slips, weights)
+    if gradual:
+        slips, weights = np.full(2, 5e-7), np.array([0.3, 0.7])
+        slides = PortLaws(ports, 0.5, slips, weights, gradual=1)
     weights_of_hits = landing_weights(LANDING)
     found, stuck, without = (
         model_of(made, replace(linear, laws=laws)).response(weights_of_hits)[0]

@@ -1,23 +1,32 @@
-"""The search on bolted bodies names nothing that its base does without."""
+"""The search on bolted bodies: what is fitted to whole records, and what is named."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hit_campaigns import Hidden, write_campaign
 
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
+from jointbench.analysis.gap.model.effect import Candidate
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
+from jointbench.analysis.gap.structure_search.records_of_search import (
+    one_of_each,
+    torques_in_turn,
+)
 from jointbench.analysis.gap.structure_search.structure_fits import accept_structure
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
     StructureOutcome,
+    affordable,
     needless,
     search_structure,
 )
-from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, worth_it
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 
@@ -50,3 +59,54 @@ def test_an_effect_that_is_far_from_off_goes_on_to_its_judge(
 ) -> None:
     """A mass of a tenth of the structure is many sd from zero."""
     assert needless(with_mass(found, 0.1), UNTESTED) is None
+
+
+def candidate(found: StructureOutcome, name: str, number: int = 0) -> Candidate:
+    """Return an effect at one of its sites."""
+    every = [c for c in found.bench.candidates if c.effect.name == name]
+    return every[number]
+
+
+def costly(found: StructureOutcome, cost: float, *candidates: Candidate) -> Fit:
+    """Return a fit of effects with a cost."""
+    return replace(found.outcome.base, candidates=candidates, cost=cost)
+
+
+def test_every_law_of_the_leading_family_is_fitted_to_whole_records(
+    found: StructureOutcome,
+) -> None:
+    """In short windows macro-slip seemed ten times worse than micro-slip."""
+    micro = costly(found, 1.0, candidate(found, "microslip"))
+    macro = costly(found, 10.0, candidate(found, "macroslip", 1))
+    further = costly(found, 11.0, candidate(found, "macroslip", 2))
+    bolt = costly(found, 10.0, candidate(found, "loose_bolt"))
+    worth = worth_it(found.bench, [micro, macro, bolt, further])
+    assert [fit.candidates for fit in worth] == [micro.candidates, macro.candidates]
+    near = replace(bolt, cost=1.0)
+    assert worth_it(found.bench, [near, macro, further]) == [near]
+
+
+def test_one_pair_with_a_law_is_fitted_to_whole_records(
+    found: StructureOutcome,
+) -> None:
+    """Each step of such a fit integrates the law for every coordinate."""
+    bolt, mass = candidate(found, "loose_bolt"), candidate(found, "added_mass")
+    laws = [
+        costly(found, 1.0 + k, bolt, candidate(found, "macroslip", k)) for k in (0, 1)
+    ]
+    linear = costly(found, 3.0, bolt, mass)
+    kept = affordable(found.bench, [*laws, linear])
+    assert [fit.candidates for fit in kept] == [laws[0].candidates, linear.candidates]
+    micro = candidate(found, "microslip")
+    assert not found.bench.may_add(micro, (candidate(found, "macroslip"),))
+    assert found.bench.may_add(micro, (bolt,))
+
+
+def test_torques_in_turn_meet_every_point_and_level(found: StructureOutcome) -> None:
+    """A third of the records, or half of them, shows every torque at each level."""
+    hits = found.bench.campaign.hits
+    few, every = torques_in_turn(hits), one_of_each(hits)
+    points = {(hits.point[k], hits.level[k]) for k in every}
+    assert {(hits.point[k], hits.level[k]) for k in few} == points
+    assert len(few) == len(points) < len(every)
+    assert set(hits.torque[few]) == set(hits.torque)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from scipy.special import ndtr
 from scipy.stats import kurtosis
 
 from jointbench.acquisition.basics.errors import UsageError
@@ -55,6 +56,18 @@ def test_an_effect_is_named_with_its_size(
         wanted *= made.facts["pitch"]
     assert values[parameter] == pytest.approx(wanted, rel=within)
     assert done.after.gap < 0.5 * done.before.gap
+
+
+def test_a_cut_surface_is_named_with_the_share_of_its_plateaus() -> None:
+    """Smooth valleys under a finish: no tip or noise beside it, and the right level."""
+    made = make_surface(520148, "plateau")
+    done = diagnose_surface(made.surface)
+    (effect,) = done.found.effects
+    assert effect.name == "plateau"
+    values = {p.name: p.value for p in effect.parameters}
+    wanted = float(ndtr(-made.facts["level"]))
+    assert values["plateau_share"] == pytest.approx(wanted, abs=0.06)
+    assert done.after.gap < 0.2 * done.before.gap
 
 
 @pytest.mark.parametrize("name", ["outliers", "quantisation", "missing_points"])

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""Which records of a campaign a search fits before it fits all of them."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import IntArray
+from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
+
+
+def one_of_each(hits: HitRecords) -> IntArray:
+    """Return the first record of each combination of point, torque and level."""
+    seen: dict[tuple[float, ...], int] = {}
+    for k in range(len(hits.names)):
+        key = (float(hits.point[k]), float(hits.torque[k]), float(hits.level[k]))
+        seen.setdefault(key, k)
+    return np.array(sorted(seen.values()), dtype=np.int64)
+
+
+def torques_in_turn(hits: HitRecords) -> IntArray:
+    """Return one record of each combination of point and level, torques in turn.
+
+    Every torque meets every level and every point, in a third of the records where
+    there are three torques.
+    """
+    torques, levels = np.unique(hits.torque), np.unique(hits.level)
+    best: dict[tuple[int, int], tuple[int, int]] = {}
+    for k in one_of_each(hits):
+        point = int(hits.point[k])
+        level = int(np.searchsorted(levels, hits.level[k]))
+        torque = int(np.searchsorted(torques, hits.torque[k]))
+        late = (torque - point - level) % torques.size
+        own = late, int(k)
+        best[point, level] = min(best.get((point, level), own), own)
+    return np.array(sorted(k for _, k in best.values()), dtype=np.int64)
