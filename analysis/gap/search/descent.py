@@ -52,6 +52,7 @@ def jacobian_of(
     first = 0 if known is None else known.shape[1]
     if known is not None:
         columns[:first] = known.T
+        del known
     each(lambda k: difference(first + k), shared - first)
     if problem.own:
         moved = x.copy()

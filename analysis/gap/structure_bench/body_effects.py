@@ -158,6 +158,8 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         each_meshed_body,
         _thicken_body,
+        # Modulus and mass of the base take most of it over.
+        always=True,
         alone=True,
     ),
     StructureEffect(

@@ -335,6 +335,13 @@ class StructureBench:
         tilt, aim = nominal.tilt_sd, nominal.aim_sd
         return np.array([tilt, tilt, aim, aim, STRUCTURE.gain_sd])
 
+    def at_rest(self) -> "StructureBench":
+        """Return the bench without what it keeps, which is computed again when used.
+
+        Closed responses and whitenings of all records are half a gigabyte.
+        """
+        return replace(self, kept=_frames_of(self.kept))
+
     def chosen(self, records: IntArray) -> "StructureBench":
         """Return the bench of some of its records."""
         hits = self.campaign.hits

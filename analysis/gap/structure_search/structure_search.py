@@ -21,7 +21,7 @@ from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
-from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening
@@ -85,15 +85,16 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     first = accept_structure(whole, base, base)
     if first.passed:
         return _complete(whole, base, first, UNTESTED)
+    # The search needs the chi2 of the base; its slopes take a gigabyte.
+    whole, base = whole.at_rest(), without_slopes(base)
     progress("directed tests")
     few = few.chosen(torques_in_turn(few.campaign.hits))
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
     done = in_whole_records(bench, few, base, singles, progress)
-    none = _complete(whole, base, first, screening)
     if not done:
-        return none
+        return _complete(whole, _with_slopes(whole, base), first, screening)
     if found := needless(done[0], screening):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
@@ -103,7 +104,13 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         two = in_whole_records(bench, few, base, pairs, progress)
         if two and two[0].acceptance.passed and _both_matter(two[0]):
             done = two
+    none = _complete(whole, _with_slopes(whole, base), first, screening)
     return StructureOutcome(_judged(none.outcome, done), done[0].bench, whole)
+
+
+def _with_slopes(bench: StructureBench, base: Fit) -> Fit:
+    """Return the fit of the base with its slopes computed again."""
+    return minimise(make_problem(bench, ()), base.x, FULL, iterations=0)
 
 
 def _with_a_second(

@@ -63,7 +63,7 @@ def in_whole_records(
             continue
         progress(f"{words_of(fit.candidates)} in whole records")
         own, found = in_full(own, fit)
-        near.append((own, without_slopes(found)))
+        near.append((own.at_rest(), without_slopes(found)))
     near.sort(key=lambda one: one[1].cost)
     done: list[JudgedFit] = []
     for own, fit in near:
@@ -73,7 +73,9 @@ def in_whole_records(
         whole, found = settled(
             bench, fit.x, fit.candidates, near=near_records(own, fit)
         )
-        done.append(JudgedFit(whole, found, accept_structure(whole, found, base)))
+        judged = accept_structure(whole, found, base)
+        done.append(JudgedFit(whole.at_rest(), found, judged))
+        del whole
         done.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
         # The slopes of all records are needed of the best fit alone.
         done[1:] = [replace(one, fit=without_slopes(one.fit)) for one in done[1:]]
