@@ -190,9 +190,9 @@ def _judged(
     outcome, reason = decide(evidence)
     nothing = np.zeros(curve.level.size)
     shift = (nothing, nothing) if after is None else shift_between(curve, after)
-    shown = amplitude_curve(curve, decays, shift)
-    if main.curved.residual_ratio > LARGEST_RESIDUAL_RATIO:
-        shown = None
+    fitted_curve = amplitude_curve(curve, decays, shift)
+    white = main.curved.residual_ratio <= LARGEST_RESIDUAL_RATIO
+    shown = fitted_curve if white else None
     depends = outcome is Dependence.DEPENDS and shown is not None
     family, ratio = family_of(change) if depends and change else ("", float("nan"))
     laws = fit_laws(curve, change, decays.derivatives) if depends else ()
@@ -204,8 +204,8 @@ def _judged(
             float(shown.damping_ratio[0]),
             float(shown.damping_sd[0]),
         )
-    elif shown is not None and change is not None and change.clear:
-        soft = _reaching(soft, shown)
+    elif fitted_curve is not None and change is not None and change.clear:
+        soft = _reaching(soft, fitted_curve)
     return AmplitudeMode(
         dependence=outcome,
         reason=reason,

@@ -35,6 +35,8 @@ _HELPED = 0.5
 # First curves: the last step gains this share; above this residual ratio a second
 # start is tried.
 _NEAR, _POOR = 1e-3, 3.0
+# Below this residual ratio of linear modes the tails hold more than noise.
+_DEAF = 0.5
 # Linear modes that curves are compared with: the last step gains this share.
 _SETTLED = 1e-6
 
@@ -90,14 +92,12 @@ def fit_band(decays: RingDowns, band: Band) -> BandFit:
         decays: of all hits.
         band: its modes and those beside it.
     """
-    lines, poles = _prepared(decays, band)
     power = decays.derivatives
-    linear = fit_linear(lines, poles, power)
+    lines, linear = _heard(*_prepared(decays, band), power)
     curved = _curves(lines, linear, power)
     quiet = rewhitened(lines, curved.residual)
     linear = _again(quiet, carried_over(linear.modes, lines, quiet), power)
-    refreshed = tuple(refresh_range(quiet, mode) for mode in linear.modes)
-    linear = replace(linear, modes=refreshed)
+    linear = _ranged(quiet, linear)
     start = carried_over(curved.modes, lines, quiet)
     start = tuple(
         with_knots(mode, own.basis, _PITCHES[0])
@@ -105,6 +105,28 @@ def fit_band(decays: RingDowns, band: Band) -> BandFit:
     )
     curved = fit_jointly(quiet, start, power)
     return _refined(BandFit(quiet, linear, curved, power))
+
+
+def _heard(
+    lines: BandLines, poles: ComplexArray, power: int
+) -> tuple[BandLines, JointFit]:
+    """Return lines whose noise hides no decay, and the linear fit to them.
+
+    A record that ends before its decays do has them in its tail. Taken for noise they
+    leave a first fit without any weight: it would end wherever rounding leads it.
+    """
+    linear = fit_linear(lines, poles, power)
+    if linear.residual_ratio > _DEAF:
+        return lines, linear
+    quiet = rewhitened(lines, linear.residual)
+    linear = _again(quiet, carried_over(linear.modes, lines, quiet), power)
+    return quiet, _ranged(quiet, linear)
+
+
+def _ranged(lines: BandLines, linear: JointFit) -> JointFit:
+    """Return a linear fit with the ranges of L that its noise leaves."""
+    modes = tuple(refresh_range(lines, mode) for mode in linear.modes)
+    return replace(linear, modes=modes)
 
 
 def _refined(fit: BandFit) -> BandFit:
@@ -137,8 +159,7 @@ def _requieted(fit: BandFit) -> BandFit:
         fit_jointly(lines, carried_over(one.modes, fit.lines, lines), fit.power)
         for one in (fit.linear, fit.curved)
     )
-    modes = tuple(refresh_range(lines, mode) for mode in linear.modes)
-    return replace(fit, lines=lines, linear=replace(linear, modes=modes), curved=curved)
+    return replace(fit, lines=lines, linear=_ranged(lines, linear), curved=curved)
 
 
 def fit_later(decays: RingDowns, band: Band, first: BandFit, delay: float) -> BandFit:

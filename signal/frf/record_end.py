@@ -84,23 +84,23 @@ class EndOnLines:
         """Return the same on some of the lines."""
         return EndOnLines(self.end, self.laplace[part], self.inverse[part])
 
-    def left(self, pole: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the share of each mode's receptance numerator that is left out.
+    def shares(self, pole: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return what each mode still holds at the end, for `inverse` on the lines.
+
+        Times `inverse` it is the share of the mode's receptance numerator that is left
+        out.
 
         Args:
             pole: without the decay rate of the window [rad/s], shape (n_modes,).
 
         Returns:
-            The share [-] and its derivative with respect to the pole [s], shape
-            (n_lines, n_modes) each.
+            The share times the force [N] and its derivative with respect to the pole
+            [N s], shape (n_modes,) each.
         """
         added = float(self.laplace[0].real)
         away = self.end.length - self.end.time
         rest = self.end.force * np.exp(np.multiply.outer(pole - added, away))
-        return (
-            np.multiply.outer(self.inverse, rest.sum(axis=1)),
-            np.multiply.outer(self.inverse, rest @ away),
-        )
+        return rest.sum(axis=1), np.asarray(rest @ away, dtype=np.complex128)
 
     @property
     def sees_offset(self) -> bool:

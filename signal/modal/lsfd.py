@@ -1,21 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Residues of known poles by weighted linear least squares (LSFD), and their FRF.
-
-The model, with s = j omega + added decay rate and q = 0, 1, 2 for receptance, mobility
-and accelerance, is
-
-    H(s) = s^q [ sum_r R_r / (s - p_r) + conj(R_r) / (s - conj(p_r))
-                 + lower / s^2 + lower' / s + upper + upper' s + ... s^6 ]
-
-so that residues are those of receptance for any kind of FRF, free of the window's
-damping. The residual terms have real coefficients: mass below the band, stiffness above
-it, and how that stiffness softens and is damped towards the modes above. With only the
-two terms of the textbooks, strong modes beyond the band bias the damping of those
-within.
-"""
+"""Residues of known poles by weighted linear least squares (LSFD), and their FRF."""
 
 from dataclasses import dataclass, replace
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -29,14 +15,8 @@ from jointbench.signal.modal.normal_equations import (
     correlations,
     gram_matrices,
     inverses,
-    stacked,
 )
-
-# Powers of s of the residual terms, in addition to the derivative of the FRF's kind.
-_RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
-_ORTHONORMAL: WeakKeyDictionary[FrfLines, ComplexArray] = WeakKeyDictionary()
-"""Columns of the residual terms: they depend on the lines alone, and a search asks for
-them once for every set of poles that it looks at."""
+from jointbench.signal.modal.pole_columns import modal_basis
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,66 +43,6 @@ class LinearFit:
         """Return receptance residues, shape (n_modes, n_frf)."""
         modal = self.coefficients[:, : 2 * self.significance.size]
         return np.asarray((modal[:, ::2] + 1j * modal[:, 1::2]).T)
-
-
-def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
-    """Return the model's columns: two for each pole, then the residual terms.
-
-    Args:
-        lines: lines of the fit.
-        pole: [rad/s], shape (n_modes,).
-
-    Returns:
-        Shape (n_lines, 2 n_modes + 9).
-    """
-    return np.hstack((modal_columns(lines, pole), _residual_terms(lines)))
-
-
-def modal_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
-    """Return the columns of Re and Im of each residue, shape (n_lines, 2 n_modes)."""
-    own, mirrored = (_mode_columns(lines, p) for p in (pole, pole.conj()))
-    columns = np.empty((own.shape[0], 2 * pole.size), complex)
-    columns[:, ::2] = own + mirrored
-    columns[:, 1::2] = 1j * (own - mirrored)
-    return columns
-
-
-def _mode_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
-    """Return what a residue of 1 of each pole adds, shape (n_lines, n_modes)."""
-    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
-    if lines.end is None:
-        return np.asarray(power / (s - pole))
-    left, _ = lines.end.left(pole)
-    return np.asarray((power - pole**lines.derivatives * left) / (s - pole))
-
-
-def _residual_terms(lines: FrfLines) -> ComplexArray:
-    """Return columns that span the residual terms, orthonormal over the lines.
-
-    Plain powers of s are nearly collinear.
-    """
-    known = _ORTHONORMAL.get(lines)
-    if known is None:
-        s = lines.laplace
-        scale, power = np.abs(s[s.size // 2]), s**lines.derivatives
-        terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
-        if lines.end is not None and lines.end.sees_offset:
-            terms.append(lines.end.offset())
-        rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
-        known = _ORTHONORMAL[lines] = _unstacked(np.linalg.qr(rows)[0])
-    return known
-
-
-def modal_size(lines: FrfLines, pole: ComplexArray) -> int:
-    """Return how many columns `modal_basis` has for these poles."""
-    offset = lines.end is not None and lines.end.sees_offset
-    return 2 * pole.size + len(_RESIDUAL_POWERS) + offset
-
-
-def _unstacked(rows: FloatArray) -> ComplexArray:
-    """Undo `stacked`."""
-    half = rows.shape[0] // 2
-    return np.asarray(rows[:half] + 1j * rows[half:])
 
 
 def fit_residues(

@@ -20,18 +20,14 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import residual_around
-from jointbench.signal.modal.lsfd import (
-    LinearFit,
-    modal_basis,
-    modal_size,
-    wald_significance,
-)
+from jointbench.signal.modal.lsfd import LinearFit, wald_significance
 from jointbench.signal.modal.normal_equations import (
     combined,
     correlations,
     gram_matrices,
     inverses,
 )
+from jointbench.signal.modal.pole_columns import basis_and_slopes, modal_size
 from jointbench.signal.modal.pole_limits import PolePrior, kept_beyond, lost_poles
 
 # Stop when no pole moves by more than this share of its own half-power width.
@@ -248,8 +244,8 @@ def _moved_on(
     step = change.view(np.float64)
     turn = slope_turns(here.coefficients[:, : step.size])
     coefficients = here.coefficients + here.slope @ step
-    fitted = combined(coefficients, modal_basis(lines, pole))
-    fitted += combined(turn @ step, pole_slopes(lines, pole))
+    both = np.hstack((coefficients, turn @ step))
+    fitted = combined(both, basis_and_slopes(lines, pole))
     return replace(here, coefficients=coefficients, residual=lines.response - fitted)
 
 
@@ -261,7 +257,7 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
     fixed columns.
     """
     n_linear, n_poles = modal_size(lines, pole), 2 * pole.size
-    columns = np.hstack((modal_basis(lines, pole), pole_slopes(lines, pole)))
+    columns = basis_and_slopes(lines, pole)
     weight = 2.0 / variance
     products = gram_matrices(columns, weight)
     inverse = inverses(products[:, :n_linear, :n_linear])
@@ -287,26 +283,6 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
 
 def _transposed(matrices: FloatArray) -> FloatArray:
     return matrices.transpose(0, 2, 1)
-
-
-def pole_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
-    """Return d/dp of the two columns of each pole, shape (n_lines, 2 n_modes)."""
-    own, mirrored = (_own_slopes(lines, p) for p in (pole, pole.conj()))
-    slopes = np.empty((own.shape[0], 2 * pole.size), complex)
-    slopes[:, ::2] = own + mirrored
-    slopes[:, 1::2] = 1j * (own - mirrored)
-    return slopes
-
-
-def _own_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
-    """Return d/dp of what a residue of 1 of each pole adds; see `modal_columns`."""
-    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
-    if lines.end is None:
-        return np.asarray(power / (s - pole) ** 2)
-    left, change = lines.end.left(pole)
-    own, q = pole**lines.derivatives, lines.derivatives
-    moved = own * change + (q * pole ** (q - 1) * left if q else 0.0)
-    return np.asarray(((power - own * left) / (s - pole) - moved) / (s - pole))
 
 
 def slope_turns(residue: FloatArray) -> FloatArray:

@@ -17,11 +17,11 @@ import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.frf_lines import FrfLines
-from jointbench.signal.modal.lsfd import LinearFit, modal_basis, modal_size
+from jointbench.signal.modal.lsfd import LinearFit
 from jointbench.signal.modal.normal_equations import gram_matrices, inverses
+from jointbench.signal.modal.pole_columns import basis_and_slopes, modal_size
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
-    pole_slopes,
     slope_turns,
 )
 
@@ -177,9 +177,9 @@ def _responses(
     Shape (n_inputs, n_lines, 2 n_poles): the projected slopes of all FRFs of a
     reference, weighted, times the FRFs.
     """
-    basis, slopes = modal_basis(lines, pole), pole_slopes(lines, pole)
     n_linear = modal_size(lines, pole)
-    columns = np.hstack((basis, slopes))
+    columns = basis_and_slopes(lines, pole)
+    basis, slopes = columns[:, :n_linear], columns[:, n_linear:]
     weight = 2.0 / variance
     products = gram_matrices(columns, weight)
     turn = slope_turns(fit.coefficients[:, : 2 * pole.size])

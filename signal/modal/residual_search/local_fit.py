@@ -25,19 +25,20 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
 )
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
-from jointbench.signal.modal.lsfd import (
-    LinearFit,
-    modal_basis,
-    modal_columns,
-    modal_size,
-)
+from jointbench.signal.modal.lsfd import LinearFit
 from jointbench.signal.modal.normal_equations import (
     combined,
     correlations,
     gram_matrices,
     inverses,
 )
-from jointbench.signal.modal.refined_pole_covariance import pole_slopes, slope_turns
+from jointbench.signal.modal.pole_columns import (
+    basis_and_slopes,
+    beside,
+    modal_columns,
+    modal_size,
+)
+from jointbench.signal.modal.refined_pole_covariance import slope_turns
 
 # Lines for each pole of a group, and for the residual terms, at least.
 _LINES_A_POLE, _LINES_REST = 6, 24
@@ -342,13 +343,7 @@ def _projected(
         response, shape (n_frf, n), and among each other, shape (n_frf, n, n).
     """
     n_linear = modal_size(lines, pole)
-    columns = np.hstack(
-        (
-            modal_basis(lines, pole),
-            pole_slopes(lines, pole),
-            modal_columns(lines, trials),
-        )
-    )
+    columns = beside(basis_and_slopes(lines, pole), modal_columns(lines, trials))
     products = gram_matrices(columns, weight)
     right = correlations(columns, weight * lines.response)
     inverse = inverses(products[:, :n_linear, :n_linear])

@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from frozen_numbers import frozen
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.provenance import step
@@ -16,6 +17,7 @@ from jointbench.acquisition.records.recordings import (
     Recording,
     Verdict,
 )
+from jointbench.acquisition.session_file.store import read_session
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.hits.find_hits import HitCriteria
@@ -139,3 +141,18 @@ def test_hits_judged_again_are_compared_with_the_whole_session() -> None:
     verdicts = [own[0].verdict for own in hits]
     assert verdicts == [Verdict.OK, Verdict.OK, Verdict.WEAK, Verdict.WEAK]
     assert "the planned level, 80 N" in hits[3][0].reason
+
+
+def test_rounding_does_not_decide_the_interval_of_a_mode() -> None:
+    """Records that end before their decays; samples differ by 4e-10 of themselves."""
+    recordings = read_session(frozen("0.1.0") / "visit.h5").recordings
+    rng = np.random.default_rng(4)
+    moved = [
+        replace(r, samples=r.samples * (1.0 + 4e-10 * rng.normal(size=r.samples.shape)))
+        for r in recordings
+    ]
+    one, other = (
+        [mode.soft.frequency_sd for mode in run_chain(records).amplitude]
+        for records in (recordings, moved)
+    )
+    np.testing.assert_allclose(other, one, rtol=1e-3)
