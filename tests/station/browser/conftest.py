@@ -51,7 +51,7 @@ def serve() -> Callable[[Sequence[ScreenPart]], AbstractContextManager[Screen]]:
     return served
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator["Browser"]:
     """Give a headless Chromium; without one on the machine, skip."""
     found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), "")
