@@ -72,7 +72,7 @@ def block_means(lines: FloatArray, count: int, degree: int) -> BlockMeans:
     size = lines.shape[1] // count
     used = lines[:, : size * count].reshape(lines.shape[0], count, size)
     place = np.linspace(-1, 1, count)
-    trend = np.asarray(np.polynomial.legendre.legvander(place, degree), dtype=float)
+    trend = np.ascontiguousarray(np.polynomial.legendre.legvander(place, degree))
     return BlockMeans(np.ascontiguousarray(used.mean(axis=2).T), size, trend)
 
 

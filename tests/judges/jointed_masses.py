@@ -133,6 +133,15 @@ def _joint_force(u, v, spring, force, state, cubic, quadratic, gap, stop):  # ty
 
 
 @njit(cache=False)
+def _along(row, values):  # type: ignore[no-untyped-def]
+    """Return a product of vectors: `np.dot` takes seconds to compile."""
+    total = 0.0
+    for k in range(row.size):
+        total += row[k] * values[k]
+    return total
+
+
+@njit(cache=False)
 def _integrate(  # type: ignore[no-untyped-def]
     mass,
     stiffness,
@@ -151,31 +160,31 @@ def _integrate(  # type: ignore[no-untyped-def]
 ):
     cubic, quadratic, gap, stop = numbers
     n = mass.size
-    old = np.zeros(n)
-    now = start.copy()
-    old[:] = start
+    old, now, new = start.copy(), start.copy(), np.zeros(n)
+    right = np.zeros(n)
     state = np.zeros(spring.size)
     samples = np.zeros((n, push.size // every))
-    u_old = np.dot(direction, old)
-    v_old = 0.0
+    u_old, v_old = _along(direction, old), 0.0
     for i in range(push.size):
-        u = np.dot(direction, now)
+        u = _along(direction, now)
         v = (u - u_old) / step
         speed = 1.5 * v - 0.5 * v_old
         f = _joint_force(u, speed, spring, limit, state, cubic, quadratic, gap, stop)
         v_old, u_old = v, u
-        right = (
-            mass * (2 * now - old) / step**2
-            + np.dot(damping, old) / (2 * step)
-            - np.dot(stiffness, now)
-            - f * direction
-        )
+        for k in range(n):
+            right[k] = (
+                mass[k] * (2 * now[k] - old[k]) / step**2
+                + _along(damping[k], old) / (2 * step)
+                - _along(stiffness[k], now)
+                - f * direction[k]
+            )
         right[where] += (1.0 - aside) * push[i]
         right[(where + 1) % n] += aside * push[i]
-        new = np.dot(inverse, right)
-        if i % every == 0:
-            samples[:, i // every] = (new - 2 * now + old) / step**2
-        old, now = now, new
+        for k in range(n):
+            new[k] = _along(inverse[k], right)
+            if i % every == 0:
+                samples[k, i // every] = (new[k] - 2 * now[k] + old[k]) / step**2
+        old, now, new = now, new, old
     return samples
 
 

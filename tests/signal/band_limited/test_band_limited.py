@@ -17,6 +17,7 @@ from jointbench.acquisition.records.surfaces import (
 from jointbench.signal.band_limited.band_limited_fit import fit_band_limited
 from jointbench.signal.band_limited.band_records import RollOffVerdict
 from jointbench.signal.band_limited.block_means import (
+    BlockMeans,
     block_means,
     kernel_of,
     toeplitz_log_likelihood,
@@ -229,18 +230,20 @@ def test_the_likelihood_of_even_spacing_is_that_of_a_factor_of_the_covariance():
     covariance = np.exp(-lag / 20)
     trend = np.polynomial.legendre.legvander(np.linspace(-1, 1, 64), 2)
     data = np.random.default_rng(5).standard_normal((64, 3)).cumsum(axis=0)
+    blocks = BlockMeans(data, 1, np.ascontiguousarray(trend))
     factor = np.linalg.cholesky(covariance[np.abs(lag[:, None] - lag).astype(int)])
     triangle = np.linalg.qr(np.linalg.solve(factor, np.hstack([trend, data])), "r")
     logs = np.log(np.diag(factor)).sum() + np.log(abs(np.diag(triangle)[:3])).sum()
     right = -0.5 * np.sum(triangle[3:, 3:] ** 2) - 3 * logs
-    found = toeplitz_log_likelihood(covariance, trend, data)
+    found = toeplitz_log_likelihood(covariance, blocks.trend, blocks.means)
     assert found == pytest.approx(right, rel=1e-10)
 
 
 def test_a_covariance_that_is_not_positive_has_no_likelihood():
     """White heights less than nothing at the next distance."""
+    blocks = BlockMeans(np.ones((4, 1)), 1, np.ones((4, 1)))
     found = toeplitz_log_likelihood(
-        np.array([1.0, -0.8, 0.9, 1.2]), np.ones((4, 1)), np.ones((4, 1))
+        np.array([1.0, -0.8, 0.9, 1.2]), blocks.trend, blocks.means
     )
     assert np.isnan(found)
 
