@@ -35,9 +35,10 @@ _CAST_DOUBT = {1: (1.5, 1.5), 2: (5.0, _TWO_MORE)}
 at which their whole distance counts [-]: lower limits cover more insignificant noise,
 and widen more clean surfaces. Blur and noise that almost cancel leave D nearly unknown:
 they count in full only where they are nearly significant."""
-_EVEN = {1: 8.0, 2: 14.0}
-"""Gain of chi2 by one or two more parameters for equal weights of both models in D [-].
-With Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+_EVEN = 14.0
+"""Gain of chi2 by one or two more parameters for equal weights of both models in D [-]:
+one clean profile in 200 has a noise, a blur or a bend of 12 and more by chance. With
+Akaike's 2 and 4, D would scatter by 10 to 25 percent more."""
 _FAR_WORSE = 40.0
 """Excess of chi2 of a smaller model, by the weights of the largest, above which its own
 weights are not worked out [-]."""
@@ -227,6 +228,5 @@ def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: Doubt) -> Doub
 
 def _weight(small: GlsFit, large: GlsFit) -> float:
     """Return the weight of the larger of two models with the same weights of lags."""
-    more = large.parameters.size - small.parameters.size
-    excess = small.chi2 - large.chi2 - _EVEN[more]
+    excess = small.chi2 - large.chi2 - _EVEN
     return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))
