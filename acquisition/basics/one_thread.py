@@ -6,11 +6,13 @@ A sum split over threads is rounded differently: stabilised poles differed by 1e
     its second thread than it computes (docs/decisions/0056).
 """
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 
 import scipy.linalg  # noqa: F401 - its BLAS must be loaded before it can be limited
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 
 @contextmanager
@@ -20,5 +22,15 @@ def one_thread() -> Iterator[None]:
     A context manager, and as ``@one_thread()`` a decorator. Not for dense problems of
     thousands of unknowns.
     """
-    with threadpool_limits(limits=1):
+    with _libraries(len(sys.modules)).limit(limits=1):
         yield
+
+
+@lru_cache(maxsize=1)
+def _libraries(modules: int) -> ThreadpoolController:
+    """Return the libraries that are loaded; to look for them takes 2 ms.
+
+    Args:
+        modules: number of those imported: another one may have loaded a library.
+    """
+    return ThreadpoolController()

@@ -18,6 +18,7 @@ from jointbench.signal.band_limited.map_parameters import (
     ROLL_OFF,
     SKEW,
 )
+from jointbench.signal.band_limited.map_sample import MapSample
 from jointbench.signal.band_limited.seen_bins import SeenBins, SeenDensity
 from jointbench.signal.band_limited.spectral_likelihood import (
     FLOOR,
@@ -41,6 +42,9 @@ _LARGEST_SKEW = 0.6
 """Largest e [-]: exponents along and across of a factor 4."""
 MOST_STEPS, _TRIALS = 40, 8
 """Most steps of a search, and most dampings of one [-]."""
+_FARTHEST = 1.5
+"""Largest step of ln roll-off [-]: beyond the map it has hardly any information, and a
+step from there leads to the other end of its range."""
 _SETTLED = 2e-3
 """Expected gain of the log-likelihood that ends a search [-]."""
 _NUDGE = 1e-3
@@ -59,6 +63,7 @@ class MapLikelihood:
         counts: ordinates of each bin, fewer where the model is only tolerated [-].
         pivot: wavenumber of the level [rad/sample]: the geometric middle of the band.
         unit_noise: variance of white heights with the least density of the spectrum.
+        bounds: lower and upper bounds of the parameters.
     """
 
     bins: SeenBins
@@ -67,6 +72,7 @@ class MapLikelihood:
     counts: FloatArray = field(init=False)
     pivot: float = field(init=False)
     unit_noise: float = field(init=False)
+    bounds: tuple[FloatArray, FloatArray] = field(init=False)
 
     def __post_init__(self) -> None:
         """Work out what a search looks at hundreds of times."""
@@ -77,6 +83,7 @@ class MapLikelihood:
         object.__setattr__(self, "counts", counts)
         object.__setattr__(self, "pivot", pivot)
         object.__setattr__(self, "unit_noise", self.bins.cell * sample.floor)
+        object.__setattr__(self, "bounds", _bounds(sample))
 
     def model(self, at: FloatArray) -> LaySpectrum:
         """Return the surface of given parameters."""
@@ -90,20 +97,6 @@ class MapLikelihood:
             ratio=math.exp(at[RATIO]),
             angle=float(at[ANGLE]),
             skew=float(at[SKEW]),
-        )
-
-    @property
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Lower and upper bounds of the parameters."""
-        sample = self.bins.sample
-        level = float(np.log(np.median(sample.power)))
-        far = np.log([_SHORTEST_ROLL_OFF, LONGEST_ROLL_OFF * sample.length])
-        low = [level - 60, HURST_RANGE[0], far[0], 0, 0]
-        high = [level + 60, HURST_RANGE[1], far[1]]
-        high += [(_WIDEST_CUT * sample.length) ** 2, 1.5]
-        return (
-            np.array([*low, -_LONGEST_RATIO, -np.inf, -_LARGEST_SKEW]),
-            np.array([*high, _LONGEST_RATIO, np.inf, _LARGEST_SKEW]),
         )
 
     def density(self, at: FloatArray) -> FloatArray:
@@ -139,6 +132,19 @@ class MapLikelihood:
         """Return the gamma deviance of the spectrum, see `SpectralLikelihood`."""
         ratio = self.bins.sample.power / density
         return float(np.sum(2 * self.counts * (ratio - 1 - np.log(ratio))))
+
+
+def _bounds(sample: MapSample) -> tuple[FloatArray, FloatArray]:
+    """Return lower and upper bounds of the parameters, each of shape (8,)."""
+    level = float(np.log(np.median(sample.power)))
+    far = np.log([_SHORTEST_ROLL_OFF, LONGEST_ROLL_OFF * sample.length])
+    low = [level - 60, HURST_RANGE[0], far[0], 0, 0]
+    high = [level + 60, HURST_RANGE[1], far[1]]
+    high += [(_WIDEST_CUT * sample.length) ** 2, 1.5]
+    return (
+        read_only(np.array([*low, -_LONGEST_RATIO, -np.inf, -_LARGEST_SKEW])),
+        read_only(np.array([*high, _LONGEST_RATIO, np.inf, _LARGEST_SKEW])),
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,26 +194,31 @@ def maximise_map(
     lower, upper = likelihood.bounds
     here, seen = _levelled(likelihood, _within(start, lower, upper), free)
     value, damping = likelihood.of_density(seen.density, here), 1e-3
-    information, slope = _scores(likelihood, here, seen, free)
+    scores = _scores(likelihood, here, seen, free)
     for _ in range(most):
-        moving = free & (information.diagonal() > 0)
-        moving &= ~((here <= lower) & (slope < 0)) & ~((here >= upper) & (slope > 0))
-        steps = _steps(information, slope, moving)
-        if not steps.damped(0.0) @ slope > 2 * _SETTLED:
+        steps = _steps(scores, here, likelihood.bounds)
+        if not steps.damped(0.0) @ scores.slope > 2 * _SETTLED:
             break
         before = value
         for _ in range(_TRIALS):
-            there = _within(here + steps.damped(damping), lower, upper)
+            step = steps.damped(damping)
+            there = _within(here + step, lower, upper)
             there, trial = _levelled(likelihood, there, free)
             reached = likelihood.of_density(trial.density, there)
+            if reached <= value:
+                # A bent ridge: the step followed by what it missed by.
+                bend = steps.bent(scores, seen, trial, there - here, damping)
+                there = _within(here + step + bend, lower, upper)
+                there, trial = _levelled(likelihood, there, free)
+                reached = likelihood.of_density(trial.density, there)
             if reached > value:
                 here, seen, value, damping = there, trial, reached, 0.2 * damping
                 break
             damping = max(1e-3, 8 * damping)
         if value - before < _SETTLED:
             break
-        information, slope = _scores(likelihood, here, seen, free)
-    return _with_long_waves_along(MapMaximum(here, value, information))
+        scores = _scores(likelihood, here, seen, free)
+    return _with_long_waves_along(MapMaximum(here, value, scores.information))
 
 
 def _levelled(
@@ -243,9 +254,28 @@ def _with_long_waves_along(found: MapMaximum) -> MapMaximum:
     return MapMaximum(at, found.value, found.information * np.outer(sign, sign))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _DensityScores:
+    """Derivatives at one place.
+
+    Attributes:
+        free: parameters that are searched, shape (n_parameters,).
+        rates: of ln density in each bin by these, shape (n_free, n_bins).
+        weighted: the same times the number of ordinates.
+        information: Fisher's, shape (n_parameters, n_parameters).
+        slope: of the log-likelihood, shape (n_parameters,).
+    """
+
+    free: BoolArray
+    rates: FloatArray
+    weighted: FloatArray
+    information: FloatArray
+    slope: FloatArray
+
+
 def _scores(
     likelihood: MapLikelihood, at: FloatArray, seen: SeenDensity, free: BoolArray
-) -> tuple[FloatArray, FloatArray]:
+) -> _DensityScores:
     """Return Fisher's information and the derivatives of the log-likelihood."""
     sample, counts, density = likelihood.bins.sample, likelihood.counts, seen.density
     white = likelihood.unit_noise / likelihood.bins.cell
@@ -260,12 +290,13 @@ def _scores(
             rates[row] = seen.rate(k)
     rates /= density
     information = np.zeros((at.size, at.size))
-    information[np.ix_(free, free)] = (rates * counts) @ rates.T
+    weighted = rates * counts
+    information[np.ix_(free, free)] = weighted @ rates.T
     slope = np.zeros(at.size)
-    slope[free] = rates @ (counts * (sample.power / density - 1))
+    slope[free] = weighted @ (sample.power / density - 1)
     if likelihood.heeds_tip and sample.transfer.tip is not None and free[BLUR]:
         _add_tip(likelihood, at, information, slope)
-    return information, slope
+    return _DensityScores(free, rates, weighted, information, slope)
 
 
 def _add_tip(
@@ -304,18 +335,52 @@ class _ScoringSteps:
 
     def damped(self, damping: float) -> FloatArray:
         """Return the damped step of all parameters."""
+        return self._solved(self.slope, damping)
+
+    def bent(
+        self,
+        scores: _DensityScores,
+        seen: SeenDensity,
+        trial: SeenDensity,
+        step: FloatArray,
+        damping: float,
+    ) -> FloatArray:
+        """Return the correction of a step by the bend of ln density along it.
+
+        Args:
+            scores: where the step begins.
+            seen: density there.
+            trial: density at its end.
+            step: of all parameters.
+            damping: of the step.
+
+        Source:
+            Transtrum, Machta and Sethna, Phys. Rev. E 83 (2011) 036701, sec. VII.
+        """
+        bend = np.log(trial.density / seen.density) - step[scores.free] @ scores.rates
+        slope = np.zeros(self.moving.size)
+        slope[scores.free] = scores.weighted @ bend
+        return -self._solved(slope[self.moving] / self.size, damping)
+
+    def _solved(self, slope: FloatArray, damping: float) -> FloatArray:
+        """Return the damped solution for all parameters."""
         step = np.zeros(self.moving.size)
         if self.size.size:
             curvature = self.curvature.copy()
             curvature.flat[:: self.size.size + 1] += damping + 1e-9
-            step[self.moving] = np.linalg.solve(curvature, self.slope) / self.size
+            step[self.moving] = np.linalg.solve(curvature, slope) / self.size
+            step[ROLL_OFF] = min(max(step[ROLL_OFF], -_FARTHEST), _FARTHEST)
         return step
 
 
 def _steps(
-    information: FloatArray, slope: FloatArray, moving: BoolArray
+    scores: _DensityScores, here: FloatArray, bounds: tuple[FloatArray, FloatArray]
 ) -> _ScoringSteps:
     """Return what the steps of all dampings have in common."""
+    lower, upper = bounds
+    information, slope = scores.information, scores.slope
+    moving = scores.free & (information.diagonal() > 0)
+    moving &= ~((here <= lower) & (slope < 0)) & ~((here >= upper) & (slope > 0))
     part = information[moving][:, moving]
     size = np.sqrt(part.diagonal())
     return _ScoringSteps(

@@ -13,6 +13,7 @@ from jointbench.signal.fractal.verdict_records import NORMAL_97_5
 
 _RADII, _TURNS = 80, 24
 """Nodes of the integral over wavelengths and directions [-]."""
+_SHARE = np.linspace(0, 1, _RADII)
 _LINE = np.array([1.0, 0.5, 0.375])
 """Mean squares of height, slope and curvature along a line, averaged over directions,
 over the integrals of q^0, q^2 and q^4 [-]."""
@@ -28,11 +29,13 @@ def ring_moments(model: LaySpectrum, low: float, high: float) -> FloatArray:
     """
     corner = 2 * np.pi / max(model.roll_offs)
     start = low if low > 0 else 1e-3 * min(corner, high)
-    edge = np.geomspace(start, high, _RADII)
+    edge = start * (high / start) ** _SHARE
     if low == 0:
         edge = np.concatenate([[0.0], edge])
     q = 0.5 * (edge[1:] + edge[:-1])
-    turn = model.angle + np.pi * (np.arange(_TURNS) + 0.5) / _TURNS
+    # An isotropic surface has the same density in all directions.
+    turns = 1 if model.ratio == 1 and model.skew == 0 else _TURNS
+    turn = model.angle + np.pi * (np.arange(turns) + 0.5) / turns
     x, y = q[:, None] * np.cos(turn), q[:, None] * np.sin(turn)
     part = 2 * np.pi * q * np.diff(edge) * model.surface(x, y).mean(axis=1)
     moments: FloatArray = _LINE * [np.sum(part * q**k) for k in (0, 2, 4)]

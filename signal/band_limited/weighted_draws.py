@@ -24,6 +24,10 @@ WIDEST_ROLL_OFF = 1.5
 _FREEDOM = 6.0
 """Degrees of freedom of the draws, for the tails of the likelihood [-]."""
 _LOW, _HIGH = 0.025, 0.975
+_UNSEEN = 0.6
+"""Weight of a model whose likeliest blur or noise is nothing, over that by likelihood
+[-]: with 1, H of clean lines is covered in 99.5 %, with 0 curvatures of noisy lines in
+89 %."""
 _BOUNDED = slice(3, 5)
 """Places of blur and noise, which cannot be less than nothing."""
 
@@ -59,7 +63,8 @@ def draw(likelihood: SpectralLikelihood, maxima: Sequence[Maximum]) -> WeightedD
     A model without blur or noise has the weight that Akaike's criterion gives it: with
     every parameter free, a flat prior on a blur and a noise that are not there would
     move H. Where its likeliest blur or noise is nothing, the weight is in proportion
-    to what a likelihood that continues below nothing would have above it.
+    to what a likelihood that continues below nothing would have above it, and smaller
+    by `_UNSEEN`.
 
     Source:
         Weights of models: Buckland et al., Biometrics 53 (1997) 603.
@@ -127,7 +132,7 @@ def _about(
         # Over the weights of a Gaussian likelihood without bounds at the same draws.
         top = found.value + roll_off_prior(likelihood.model(found.parameters), points)
         endless = np.exp(proposed - 0.5 * _WIDER**2 * squares)
-        mass = min(1.0, float(np.exp(logs - top).sum() / endless.sum()))
+        mass = _UNSEEN * min(1.0, float(np.exp(logs - top).sum() / endless.sum()))
     return WeightedDraws(parameters, weight / weight.sum()), mass
 
 

@@ -30,12 +30,15 @@ _ONE_MORE = 7.88
 all tests together choose a larger model by chance in at most 1 %."""
 _TWO_MORE = 11.4
 """The same for two more parameters, with a probability of 0.33 % [-]."""
-_CAST_DOUBT = {1: 1.5, 2: 5.0}
-"""Gain of chi2 by one or two more parameters from which they add uncertainty to D [-]:
-lower limits cover more insignificant noise, and widen more clean profiles."""
-_EVEN = {1: 8.0, 2: 14.0}
-"""Gain of chi2 by one or two more parameters for equal weights of both models in D [-].
-With Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+_CAST_DOUBT = {1: (1.5, 1.5), 2: (5.0, _TWO_MORE)}
+"""Gains of chi2 by one or two more parameters from which they add uncertainty to D, and
+at which their whole distance counts [-]: lower limits cover more insignificant noise,
+and widen more clean surfaces. Blur and noise that almost cancel leave D nearly unknown:
+they count in full only where they are nearly significant."""
+_EVEN = 14.0
+"""Gain of chi2 by one or two more parameters for equal weights of both models in D [-]:
+one clean profile in 200 has a noise, a blur or a bend of 12 and more by chance. With
+Akaike's 2 and 4, D would scatter by 10 to 25 percent more."""
 _FAR_WORSE = 40.0
 """Excess of chi2 of a smaller model, by the weights of the largest, above which its own
 weights are not worked out [-]."""
@@ -83,7 +86,7 @@ def choose_instrument(
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
     gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
     if gains[0] < _ONE_MORE and gains[1] < _TWO_MORE:
-        doubt = _doubt(plain, noisy if gains[0] > _CAST_DOUBT[1] else both)
+        doubt = _doubt(plain, noisy if gains[0] > _CAST_DOUBT[1][0] else both)
         return by_own_weights(problem, plain), doubt
     best, doubt = _without_tip(problem, plain, noisy, both)
     strict = problem.tolerance == 0 and problem.axes == 1 and not rolls_off
@@ -184,7 +187,7 @@ def _doubt(small: GlsFit, large: GlsFit) -> Doubt:
 
     A noise too small to be significant still shifts D. The larger model includes the
     true one, so its full distance from the average counts as uncertainty, not only its
-    weighted share.
+    weighted share; of two more parameters as much of it as they gain.
 
     Source:
         Weights by likelihood and the variance within the models: Burnham and Anderson,
@@ -192,12 +195,14 @@ def _doubt(small: GlsFit, large: GlsFit) -> Doubt:
     """
     more = large.parameters.size - small.parameters.size
     gain = small.chi2 - large.chi2
-    if gain < _CAST_DOUBT[more]:
+    begins, whole = _CAST_DOUBT[more]
+    if gain < begins:
         return no_doubt()
+    share = 1.0 if gain >= whole else (gain - begins) / (whole - begins)
     weight = _weight(small, large)
     apart = large.parameters[:2] - small.parameters[:2]
     widened = large.covariance[:2, :2] - small.covariance[:2, :2]
-    left = (1 - weight) * apart
+    left = share * (1 - weight) * apart
     return Doubt(weight * apart, weight * widened + np.outer(left, left))
 
 
@@ -223,6 +228,5 @@ def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: Doubt) -> Doub
 
 def _weight(small: GlsFit, large: GlsFit) -> float:
     """Return the weight of the larger of two models with the same weights of lags."""
-    more = large.parameters.size - small.parameters.size
-    excess = small.chi2 - large.chi2 - _EVEN[more]
+    excess = small.chi2 - large.chi2 - _EVEN
     return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))

@@ -9,6 +9,7 @@ of each octave.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,9 @@ _EVERY_ROW = 4
 """Rows of the nearest that all count; the first octave begins there [rows]."""
 _ROWS = 3
 """Rows of each octave: polynomials up to degree 5 are added up exactly [-]."""
+
+_KEPT = 8
+"""Grids and lags whose places are kept: a fit of a map has two [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,12 +79,23 @@ class MapSums:
 def map_sums(lag: IntArray, points: int, profiles: int, row_distance: float) -> MapSums:
     """Choose the rows of the sums.
 
+    Those of the last few grids are kept: an instrument's maps have one.
+
     Args:
         lag: [samples].
         points: of a row.
         profiles: rows of the map.
         row_distance: of neighbouring rows, as far as heights vary [samples].
     """
+    return _sums_of_grid(tuple(lag.tolist()), points, profiles, row_distance)
+
+
+@lru_cache(maxsize=_KEPT)
+def _sums_of_grid(
+    lags: tuple[int, ...], points: int, profiles: int, row_distance: float
+) -> MapSums:
+    """Return the sums of a grid, see `map_sums`."""
+    lag = np.array(lags)
     rows, counts = zip(*_octaves(profiles), strict=True)
     row, count = np.concatenate(rows), np.concatenate(counts)
     # Rows r > 0 apart meet above and below.
