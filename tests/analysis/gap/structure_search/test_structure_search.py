@@ -1,6 +1,8 @@
 """The search on bolted bodies: what is fitted to whole records, and what is named."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,11 +16,15 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
+from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
-from jointbench.analysis.gap.structure_search.structure_fits import accept_structure
+from jointbench.analysis.gap.structure_search.structure_fits import (
+    accept_structure,
+    settled,
+)
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
     StructureOutcome,
@@ -59,6 +65,27 @@ def test_an_effect_that_is_far_from_off_goes_on_to_its_judge(
 ) -> None:
     """A mass of a tenth of the structure is many sd from zero."""
     assert needless(with_mass(found, 0.1), UNTESTED) is None
+
+
+def test_a_mark_that_all_hits_missed_is_not_explained(tmp_path: Path) -> None:
+    """Aim and tilt of each hit follow the records, so chi2 shows nothing of it."""
+    path, nominal = write_campaign(tmp_path, Hidden(mark=(8e-3, 0.0)))
+    bench = make_structure_bench(read_hit_campaign(path, *read_nominal(nominal)))
+    bench, base = settled(bench, np.zeros(bench.base_sd.size), (), near=True)
+    judged = accept_structure(bench, base, base)
+    assert judged.excess < judged.allowed
+    assert re.fullmatch(r"hits at P1 landed [78]\.\d mm beside .*", judged.reason)
+    assert not judged.passed
+
+
+def test_one_hit_may_miss_by_more_than_a_dozen(found: StructureOutcome) -> None:
+    """A mean of few hits scatters more than one of many."""
+    campaign = found.bench.campaign
+    own = np.flatnonzero(campaign.hits.point == 0)
+    landing = np.zeros((campaign.hits.point.size, 4))
+    landing[own, 2] = 4 * campaign.nominal.aim_sd
+    assert "P1" in mark_missed(campaign, landing, 3.0, 5.0)
+    assert not mark_missed(campaign, landing, 3.0, 4.1 * np.sqrt(own.size))
 
 
 def candidate(found: StructureOutcome, name: str, number: int = 0) -> Candidate:
