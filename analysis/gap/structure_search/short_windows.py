@@ -63,7 +63,7 @@ def carried(
             for s in starts[: STRUCTURE.starts_kept]
         ]
         fits += sorted(found, key=lambda f: f.cost)[:1]
-        rival = min(f.cost for f in fits)
+        rival = min((f.cost for f in fits), default=None)
     fits.sort(key=lambda f: score(few, f))
     longer: list[Fit] = []
     rival = None
