@@ -13,14 +13,17 @@ from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import Direction, Screening
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
+from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     settled,
@@ -29,8 +32,11 @@ from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
     StructureOutcome,
     affordable,
+    alone,
     needless,
+    one_effect_takes_much,
     search_structure,
+    takes,
 )
 from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, worth_it
 from jointbench.station.schemas.nominal_bench_file import read_nominal
@@ -71,7 +77,7 @@ def test_a_mark_that_all_hits_missed_is_not_explained(tmp_path: Path) -> None:
     """Aim and tilt of each hit follow the records, so chi2 shows nothing of it."""
     path, nominal = write_campaign(tmp_path, Hidden(mark=(8e-3, 0.0)))
     bench = make_structure_bench(read_hit_campaign(path, *read_nominal(nominal)))
-    bench, base = settled(bench, np.zeros(bench.base_sd.size), (), near=True)
+    bench, base = based(bench)
     judged = accept_structure(bench, base, base)
     assert judged.excess < judged.allowed
     assert re.fullmatch(r"hits at P1 landed [78]\.\d mm beside .*", judged.reason)
@@ -86,6 +92,67 @@ def test_one_hit_may_miss_by_more_than_a_dozen(found: StructureOutcome) -> None:
     landing[own, 2] = 4 * campaign.nominal.aim_sd
     assert "P1" in mark_missed(campaign, landing, 3.0, 5.0)
     assert not mark_missed(campaign, landing, 3.0, 4.1 * np.sqrt(own.size))
+
+
+def test_one_effect_may_take_much_of_what_an_accepted_base_leaves(
+    tmp_path: Path,
+) -> None:
+    """The limit of chi2 is wide; a gain of 0.4 % stays below it and is no error."""
+    path, nominal = write_campaign(tmp_path, Hidden())
+    campaign = read_hit_campaign(path, *read_nominal(nominal))
+    complete = make_structure_bench(campaign)
+    assert not one_effect_takes_much(*based(complete))
+    response = campaign.hits.response.copy()
+    response[:, 1] *= 1.004
+    hits = replace(campaign.hits, response=response)
+    bench, base = based(make_structure_bench(replace(campaign, hits=hits)))
+    assert accept_structure(bench, base, base).passed
+    assert one_effect_takes_much(bench, base)
+    assert takes(replace(base, residual=0.8 * base.residual), base)
+    assert not takes(replace(base, residual=0.95 * base.residual), base)
+
+
+def based(bench: StructureBench) -> tuple[StructureBench, Fit]:
+    """Return the base, fitted to all whole records."""
+    return settled(bench, np.zeros(bench.base_sd.size), (), near=True)
+
+
+def test_a_pair_whose_second_effect_is_nearly_off_is_a_single_one(
+    found: StructureOutcome,
+) -> None:
+    """It was a further start for the first one."""
+    mass, bolt = candidate(found, "added_mass"), candidate(found, "loose_bolt")
+    problem = make_problem(found.bench, (mass, bolt))
+    start = np.append(found.outcome.base.x, [1e-9, 1e-6])
+    fit = minimise(problem, start, iterations=0)
+    judged = JudgedFit(found.bench, fit, accept_structure(found.bench, fit, fit))
+    one = alone(found.bench, found.outcome.base, judged)
+    assert one is not None
+    assert len(one.fit.candidates) == 1
+    refused = replace(judged, acceptance=replace(judged.acceptance, passed=False))
+    assert alone(found.bench, found.outcome.base, refused) is None
+
+
+def test_effects_at_the_place_of_the_leader_are_tried(found: StructureOutcome) -> None:
+    """A cable resonance looks like a gain in directed tests."""
+    gain = candidate(found, "gain_error", 1)
+    direction = Direction(
+        candidate=gain,
+        coordinates=np.array([0.1]),
+        shift=np.zeros(found.outcome.base.x.size),
+        drop=1.0,
+        one_sided=False,
+        suggested=False,
+        amplitude=0.1,
+        amplitude_sd=0.01,
+    )
+    few = found.bench.chosen(one_of_each(found.bench.campaign.hits))
+    near = minimise(make_problem(few, ()), found.outcome.base.x, SHORT, iterations=0)
+    lines: list[str] = []
+    carried(few, near, Screening((direction,), 0.0, 1.0), lines.append)
+    short = {line.split(" ")[0] for line in lines if "short" in line}
+    assert {f"gain_error@{gain.site}", f"cable_resonance@{gain.site}"} <= short
+    assert f"cable_resonance@{candidate(found, 'gain_error', 0).site}" not in short
 
 
 def candidate(found: StructureOutcome, name: str, number: int = 0) -> Candidate:
