@@ -30,10 +30,12 @@ class Hidden:
     Attributes:
         loose: factor on stiffness and damping of each bolt [-].
         delays: of each channel [samples].
+        mark: offset at which all hits of the first point aim [m].
     """
 
     loose: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
     delays: tuple[int, ...] = (0, 0, 0)
+    mark: tuple[float, float] = (0.0, 0.0)
 
 
 def write_campaign(folder: Path, hidden: Hidden, seed: int = 5) -> tuple[Path, Path]:
@@ -60,6 +62,7 @@ def write_campaign(folder: Path, hidden: Hidden, seed: int = 5) -> tuple[Path, P
             for torque in (20.0, 50.0):
                 for peak in (100.0, 1000.0):
                     aim = 1e-3 * rng.standard_normal(2)
+                    aim += hidden.mark if point == POINTS[0] else 0.0
                     tilt = 0.02 * rng.standard_normal(2)
                     direction = np.array([*tilt, -1.0])
                     direction /= np.linalg.norm(direction)

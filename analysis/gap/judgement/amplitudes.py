@@ -48,11 +48,16 @@ def weakest(fit: Fit, others: Sequence[Fit]) -> float:
 
 def weakest_amplitude(fit: Fit) -> float:
     """Return the smallest distance of an amplitude from OFF, in sd."""
+    return min(amplitude_sizes(fit), default=np.inf)
+
+
+def amplitude_sizes(fit: Fit) -> list[float]:
+    """Return the distance of each amplitude from OFF, in sd; infinite if fixed."""
     sd = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
-    at, worst = fit.n_base, np.inf
+    at, sizes = fit.n_base, []
     for candidate in fit.candidates:
         first = candidate.effect.parameters[0]
-        if first.upper - first.lower > 1e-3:
-            worst = min(worst, abs(fit.x[at]) / sd[at])
+        free = first.upper - first.lower > 1e-3
+        sizes.append(float(abs(fit.x[at]) / sd[at]) if free else np.inf)
         at += len(candidate.effect.parameters)
-    return float(worst)
+    return sizes

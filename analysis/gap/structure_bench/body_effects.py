@@ -139,6 +139,7 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         each_body,
         _stiffen_body,
+        always=True,
     ),
     StructureEffect(
         Effect(

@@ -145,6 +145,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
             _COUPLING,
             joint_axes,
             _rock,
+            always=True,
         ),
         by_frequency=True,
     ),
@@ -167,10 +168,18 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
     one_parameter(
         "contact_patch",
         "stiffness",
-        Parameter("slope", "-", lower=-0.95, upper=0.95, off=0.0),
+        Parameter(
+            "slope",
+            "-",
+            lower=-0.95,
+            upper=0.95,
+            off=0.0,
+            far=(-0.6, -0.3, 0.3, 0.6),
+        ),
         _COUPLING,
         joint_axes,
         _tilt,
+        always=True,
     ),
     one_parameter(
         "preload_stiffness",
@@ -179,6 +188,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
         _PRELOAD,
         with_torques,
         _by_torque,
+        always=True,
     ),
     one_parameter(
         "preload_damping",
@@ -187,6 +197,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
         _PRELOAD,
         with_torques,
         _damp_by_torque,
+        always=True,
     ),
 )
 """Linear effects of the joint."""

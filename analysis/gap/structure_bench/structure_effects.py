@@ -25,7 +25,8 @@ class StructureEffect:
         sites: where it can act on a structure.
         change: adds it to a state of the model.
         nonlinear: True if it is integrated in time.
-        always: True if fits start from it whatever the directed tests find.
+        always: True if fits start from it whatever the directed tests find: effects of
+            a body or a joint, which a base at its bounds follows, have few sites.
         by_frequency: True if it is not integrated in time, so that no law that is can
             be fitted beside it.
         aimed: True if it moves the mark of a point: fits also start at the mean place
@@ -51,6 +52,8 @@ def one_parameter(
     source: str,
     sites: Sites,
     change: Change,
+    *,
+    always: bool = False,
 ) -> StructureEffect:
     """Return a linear effect of one parameter.
 
@@ -61,8 +64,10 @@ def one_parameter(
         source: of its physics.
         sites: where it can act.
         change: adds it to a state.
+        always: True if fits start from it whatever the directed tests find.
     """
-    return StructureEffect(Effect(name, family, (parameter,), source), sites, change)
+    effect = Effect(name, family, (parameter,), source)
+    return StructureEffect(effect, sites, change, always=always)
 
 
 def structure_candidates(

@@ -53,6 +53,30 @@ def mean_landing(campaign: HitCampaign, point: str, landing: FloatArray) -> Floa
     return np.asarray(own.mean(axis=0) @ bodies.points[index].across[:, axes])
 
 
+def mark_missed(
+    campaign: HitCampaign, landing: FloatArray, common: float, error: float
+) -> str:
+    """Return which mark all hits missed, in words; empty if none.
+
+    Aim scatters from hit to hit. What the hits of a point have in common is no scatter
+    of the aim, even where aim and tilt of each hit follow the records.
+
+    Args:
+        campaign: with the points and the sd of the aim.
+        landing: tilts [rad] and offsets [m] of each hit, shape (n_hits, 4).
+        common: mean offset that the scatter of the aim may have [sd of a hit].
+        error: the same in sd of the mean of so many hits, where that is larger.
+    """
+    point, aim = campaign.hits.point, campaign.nominal.aim_sd
+    for index in np.unique(point):
+        own = landing[point == index, 2:]
+        offset = float(np.linalg.norm(own.mean(axis=0)))
+        if offset > aim * max(common, error / np.sqrt(len(own))):
+            name = campaign.bodies.points[index].name
+            return f"hits at {name} landed {1e3 * offset:.1f} mm beside it on average"
+    return ""
+
+
 def landing_slopes(landing: FloatArray) -> FloatArray:
     """Return slopes of the weights by tilts, offsets and gain, (n_hits, 5, 9)."""
     step = np.array([1e-6, 1e-6, 1e-9, 1e-9])

@@ -63,7 +63,7 @@ def carried(
             for s in starts[: STRUCTURE.starts_kept]
         ]
         fits += sorted(found, key=lambda f: f.cost)[:1]
-        rival = min(f.cost for f in fits)
+        rival = min((f.cost for f in fits), default=None)
     fits.sort(key=lambda f: score(few, f))
     longer: list[Fit] = []
     rival = None
@@ -88,7 +88,8 @@ def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candid
     """Return the leaders of the directed tests, and those that are always tried.
 
     An effect leads at a few sites at most, else one that follows any residual would
-    fill all places.
+    fill all places. Effects at the place of the first leader, without laws, are tried
+    as well: a strong one looks like another one there.
     """
     always = {e.effect.name for e in few.entries if e.always}
     free = [c for c in few.candidates if few.may_add(c, near.candidates)]
@@ -98,7 +99,14 @@ def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candid
         same = sum(c.effect.name == one.effect.name for one in others)
         if c not in chosen and same < STRUCTURE.leading_sites:
             others.append(c)
-    return others[: STRUCTURE.leaders] + chosen
+    leaders = others[: STRUCTURE.leaders]
+    place = [
+        c
+        for c in free
+        if leaders and c.site == leaders[0].site and not few.nonlinear((c,))
+        if c not in leaders and c not in chosen
+    ]
+    return leaders + place + chosen
 
 
 def _starts(

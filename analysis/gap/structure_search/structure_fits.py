@@ -22,6 +22,7 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
+from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -225,10 +226,11 @@ def _whole(
 
 
 def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
-    """Judge a fit of whole records by its chi2 and by the deviations of its base.
+    """Judge a fit of whole records by its chi2, its base and where hits landed.
 
     A base can take over a loose bolt at an inconspicuous chi2 if one of its parameters
-    deviates by many sd, so chi2 alone does not decide.
+    deviates by many sd, and the aim of each hit a mark that all of them missed, so chi2
+    alone does not decide.
 
     Args:
         bench: on which the fit was found.
@@ -248,6 +250,10 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
     elif deviation > policy.floor_prior_limit:
         worst = bench.base_names[int(np.argmax(np.abs(fit.prior_deviations)))]
         reason = f"{worst} is {deviation:.1f} sd from its nominal value"
+    else:
+        landing, _ = bench.landed(fit.base, fit.terms)
+        common, error = STRUCTURE.mark_sd, policy.floor_prior_limit
+        reason = mark_missed(bench.campaign, landing, common, error)
     return Acceptance(
         passed=not reason,
         reason=reason,

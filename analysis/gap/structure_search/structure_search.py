@@ -16,7 +16,10 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
+from jointbench.analysis.gap.judgement.amplitudes import (
+    amplitude_sizes,
+    weakest_amplitude,
+)
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import labels_of, words_of
@@ -24,7 +27,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resol
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
-from jointbench.analysis.gap.search.screening import Screening
+from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
@@ -33,6 +36,7 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.short_windows import (
+    LONGER,
     SHORT,
     carried,
     tested,
@@ -83,7 +87,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     bench = replace(bench, reach=STRUCTURE.final_reach)
     whole, base = _base_in_whole_records(bench, few, start)
     first = accept_structure(whole, base, base)
-    if first.passed:
+    if first.passed and not one_effect_takes_much(whole, base):
         return _complete(whole, base, first, UNTESTED)
     # The search needs the chi2 of the base; its slopes take a gigabyte.
     whole, base = whole.at_rest(), without_slopes(base)
@@ -93,6 +97,8 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
     done = in_whole_records(bench, few, base, singles, progress)
+    if first.passed:
+        done = [one for one in done if one.acceptance.passed and takes(one.fit, base)]
     if not done:
         return _complete(whole, _with_slopes(whole, base), first, screening)
     if found := needless(done[0], screening):
@@ -102,10 +108,66 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     if exact and not done[0].acceptance.passed:
         pairs = _with_a_second(few, singles, progress)
         two = in_whole_records(bench, few, base, pairs, progress)
-        if two and two[0].acceptance.passed and _both_matter(two[0]):
+        if two and (one := alone(bench, base, two[0])):
+            done = [one]
+        elif two and two[0].acceptance.passed and _both_matter(two[0]):
             done = two
     none = _complete(whole, _with_slopes(whole, base), first, screening)
     return StructureOutcome(_judged(none.outcome, done), done[0].bench, whole)
+
+
+def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
+    """Return whether one effect would take much of what an accepted base leaves.
+
+    The limit of chi2 is wide, since it must hold for errors of the model. They resemble
+    no effect, so one that takes a good share of them is worth a search. Marks are left
+    to the mean of where hits landed, and errors of an uncertain modal table resemble
+    effects.
+
+    Args:
+        whole: all records.
+        base: fit without effects that is accepted.
+    """
+    if whole.campaign.nominal.table_sd[1] > 0.0:
+        return False
+    every = one_of_each(whole.campaign.hits)
+    own = whole.chosen(every)
+    own = whole.chosen(every[torques_in_turn(own.campaign.hits)])
+    near = minimise(make_problem(own, ()), base.x, LONGER, iterations=4)
+    aimed = {e.effect.name for e in own.entries if e.aimed}
+    linear = [
+        c
+        for c in own.candidates
+        if c.effect.name not in aimed and not own.nonlinear((c,))
+    ]
+    found = screen(own, near, linear, resolution=LONGER)
+    return found.largest > STRUCTURE.taken_share * near.chi2
+
+
+def takes(fit: Fit, base: Fit) -> bool:
+    """Return whether a fit takes a good share of what the base leaves."""
+    return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
+
+
+def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None:
+    """Return the accepted fit of a single effect to which a pair led, if it did.
+
+    Where the second effect of a pair is nearly off, it was a further start for the
+    first.
+
+    Args:
+        bench: all records.
+        base: fit without effects.
+        pair: fit of two effects.
+    """
+    sizes = amplitude_sizes(pair.fit)
+    if not pair.acceptance.passed or min(sizes) >= STRUCTURE.plain_amplitude:
+        return None
+    kept = pair.fit.terms[int(np.argmax(sizes))]
+    start = np.concatenate([pair.fit.base, kept.coordinates])
+    own, fit = settled(bench, start, (kept.candidate,), near=True)
+    judged = JudgedFit(own, fit, accept_structure(own, fit, base))
+    return judged if judged.acceptance.passed else None
 
 
 def _with_slopes(bench: StructureBench, base: Fit) -> Fit:

@@ -1,6 +1,8 @@
 """The search on bolted bodies: what is fitted to whole records, and what is named."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,20 +13,30 @@ from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import Direction, Screening
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
-from jointbench.analysis.gap.structure_search.structure_fits import accept_structure
+from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
+from jointbench.analysis.gap.structure_search.structure_fits import (
+    accept_structure,
+    settled,
+)
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
     StructureOutcome,
     affordable,
+    alone,
     needless,
+    one_effect_takes_much,
     search_structure,
+    takes,
 )
 from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, worth_it
 from jointbench.station.schemas.nominal_bench_file import read_nominal
@@ -59,6 +71,88 @@ def test_an_effect_that_is_far_from_off_goes_on_to_its_judge(
 ) -> None:
     """A mass of a tenth of the structure is many sd from zero."""
     assert needless(with_mass(found, 0.1), UNTESTED) is None
+
+
+def test_a_mark_that_all_hits_missed_is_not_explained(tmp_path: Path) -> None:
+    """Aim and tilt of each hit follow the records, so chi2 shows nothing of it."""
+    path, nominal = write_campaign(tmp_path, Hidden(mark=(8e-3, 0.0)))
+    bench = make_structure_bench(read_hit_campaign(path, *read_nominal(nominal)))
+    bench, base = based(bench)
+    judged = accept_structure(bench, base, base)
+    assert judged.excess < judged.allowed
+    assert re.fullmatch(r"hits at P1 landed [78]\.\d mm beside .*", judged.reason)
+    assert not judged.passed
+
+
+def test_one_hit_may_miss_by_more_than_a_dozen(found: StructureOutcome) -> None:
+    """A mean of few hits scatters more than one of many."""
+    campaign = found.bench.campaign
+    own = np.flatnonzero(campaign.hits.point == 0)
+    landing = np.zeros((campaign.hits.point.size, 4))
+    landing[own, 2] = 4 * campaign.nominal.aim_sd
+    assert "P1" in mark_missed(campaign, landing, 3.0, 5.0)
+    assert not mark_missed(campaign, landing, 3.0, 4.1 * np.sqrt(own.size))
+
+
+def test_one_effect_may_take_much_of_what_an_accepted_base_leaves(
+    tmp_path: Path,
+) -> None:
+    """The limit of chi2 is wide; a gain of 0.4 % stays below it and is no error."""
+    path, nominal = write_campaign(tmp_path, Hidden())
+    campaign = read_hit_campaign(path, *read_nominal(nominal))
+    complete = make_structure_bench(campaign)
+    assert not one_effect_takes_much(*based(complete))
+    response = campaign.hits.response.copy()
+    response[:, 1] *= 1.004
+    hits = replace(campaign.hits, response=response)
+    bench, base = based(make_structure_bench(replace(campaign, hits=hits)))
+    assert accept_structure(bench, base, base).passed
+    assert one_effect_takes_much(bench, base)
+    assert takes(replace(base, residual=0.8 * base.residual), base)
+    assert not takes(replace(base, residual=0.95 * base.residual), base)
+
+
+def based(bench: StructureBench) -> tuple[StructureBench, Fit]:
+    """Return the base, fitted to all whole records."""
+    return settled(bench, np.zeros(bench.base_sd.size), (), near=True)
+
+
+def test_a_pair_whose_second_effect_is_nearly_off_is_a_single_one(
+    found: StructureOutcome,
+) -> None:
+    """It was a further start for the first one."""
+    mass, bolt = candidate(found, "added_mass"), candidate(found, "loose_bolt")
+    problem = make_problem(found.bench, (mass, bolt))
+    start = np.append(found.outcome.base.x, [1e-9, 1e-6])
+    fit = minimise(problem, start, iterations=0)
+    judged = JudgedFit(found.bench, fit, accept_structure(found.bench, fit, fit))
+    one = alone(found.bench, found.outcome.base, judged)
+    assert one is not None
+    assert len(one.fit.candidates) == 1
+    refused = replace(judged, acceptance=replace(judged.acceptance, passed=False))
+    assert alone(found.bench, found.outcome.base, refused) is None
+
+
+def test_effects_at_the_place_of_the_leader_are_tried(found: StructureOutcome) -> None:
+    """A cable resonance looks like a gain in directed tests."""
+    gain = candidate(found, "gain_error", 1)
+    direction = Direction(
+        candidate=gain,
+        coordinates=np.array([0.1]),
+        shift=np.zeros(found.outcome.base.x.size),
+        drop=1.0,
+        one_sided=False,
+        suggested=False,
+        amplitude=0.1,
+        amplitude_sd=0.01,
+    )
+    few = found.bench.chosen(one_of_each(found.bench.campaign.hits))
+    near = minimise(make_problem(few, ()), found.outcome.base.x, SHORT, iterations=0)
+    lines: list[str] = []
+    carried(few, near, Screening((direction,), 0.0, 1.0), lines.append)
+    short = {line.split(" ")[0] for line in lines if "short" in line}
+    assert {f"gain_error@{gain.site}", f"cable_resonance@{gain.site}"} <= short
+    assert f"cable_resonance@{candidate(found, 'gain_error', 0).site}" not in short
 
 
 def candidate(found: StructureOutcome, name: str, number: int = 0) -> Candidate:
