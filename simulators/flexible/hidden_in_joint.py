@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.simulators.flexible.bolt_friction import Yielding
 from jointbench.simulators.flexible.closed_structure import (
     NORMAL,
     Coordinates,
@@ -20,14 +21,15 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BodyPlace,
     BoltedSpecimen,
 )
-from jointbench.simulators.flexible.friction_and_stops import (
-    BoltLaw,
-    PortLawKind,
-    power_law_sliders,
-)
+from jointbench.simulators.flexible.friction_and_stops import BoltLaw, PortLawKind
 from jointbench.simulators.flexible.joint_values import BoltValues
 
 TANGENTIAL = (0, 1)
+_EXPONENTS = {
+    Yielding.RICHARD_ABBOTT: "yield_exponent",
+    Yielding.CONTACT: "contact_exponent",
+    Yielding.BOUC_WEN: "bouc_wen_exponent",
+}
 _RATTLER_DAMPING, _RATTLER_FREQUENCY = 0.05, 4.0  # [-], [Hz]: it rests in its cavity
 _RATTLER_STIFFNESS = 400.0  # [Hz], as frequency of its mass on its stop
 
@@ -220,17 +222,15 @@ def _friction(
     effect: FlexibleEffect,
     condition: HitCondition,
 ) -> Iterator[BoltLaw]:
-    """Yield the sliders of the tangential directions of one bolt or of all."""
+    """Yield the friction of the tangential directions of one bolt or of all."""
     p, bolt = effect.parameters, effect.where["bolt"]
     bolts = range(place.bolts.shape[0]) if bolt == "all" else (int(bolt),)
     # The slip force grows with the preload; the stiffness does not.
-    grown = condition.torque_ratio ** p["torque_exponent"]
-    if effect.name == "microslip":
-        weights, slips = power_law_sliders(p["phimax"] * grown, p["chi"])
-    else:
-        weights, slips = np.ones(1), np.array([p["slip"] * grown])
+    slip = p["slip"] * condition.torque_ratio ** p["torque_exponent"]
+    way = next(way for way, key in _EXPONENTS.items() if key in p)
     for index in bolts:
         for direction in TANGENTIAL:
             k = float(state.values.stiffness[index, direction]) * p["share"]
             row = place.bolts[index, direction]
-            yield BoltLaw(PortLawKind.FRICTION, row, (k, 0.0), weights, slips)
+            numbers = k, slip, float(way), p[_EXPONENTS[way]], p.get("unloading", 0.0)
+            yield BoltLaw(PortLawKind.FRICTION, row, numbers)
