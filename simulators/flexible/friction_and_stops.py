@@ -149,6 +149,26 @@ class PortMemory:
             move_friction(numbers, motion, own, force[law], kept)
 
 
+def forces_along(law: BoltLaw, path: FloatArray) -> FloatArray:
+    """Return the force of a law along a path of its port [N], at rest before it.
+
+    Args:
+        law: which does not depend on the velocity.
+        path: motion [m], shape (n,).
+    """
+    port = LawBank(
+        np.ones((1, 1)),
+        np.array([law.kind], dtype=np.int64),
+        np.array([[*law.parameters, *[0.0] * (_NUMBERS - len(law.parameters))]]),
+    )
+    memory, found = PortMemory(port, 1), np.zeros(path.size)
+    for k, r in enumerate(path):
+        point = np.array([[r], [0.0]])
+        memory.commit(np.vstack((point, point)), point)
+        found[k] = memory.force[0, 0]
+    return found
+
+
 @compiled(error_model="numpy")
 def _forces(laws: _LawArrays, r: FloatArray, v: FloatArray, force: FloatArray) -> None:
     """Write the forces of all laws without memory."""

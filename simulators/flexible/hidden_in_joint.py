@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What hidden effects change in the structure: its linear joint, its laws, its rows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -225,12 +225,25 @@ def _friction(
     """Yield the friction of the tangential directions of one bolt or of all."""
     p, bolt = effect.parameters, effect.where["bolt"]
     bolts = range(place.bolts.shape[0]) if bolt == "all" else (int(bolt),)
-    # The slip force grows with the preload; the stiffness does not.
-    slip = p["slip"] * condition.torque_ratio ** p["torque_exponent"]
-    way = next(way for way, key in _EXPONENTS.items() if key in p)
     for index in bolts:
         for direction in TANGENTIAL:
-            k = float(state.values.stiffness[index, direction]) * p["share"]
-            row = place.bolts[index, direction]
-            numbers = k, slip, float(way), p[_EXPONENTS[way]], p.get("unloading", 0.0)
-            yield BoltLaw(PortLawKind.FRICTION, row, numbers)
+            k = float(state.values.stiffness[index, direction])
+            numbers = friction_numbers(p, k, condition.torque_ratio)
+            yield BoltLaw(PortLawKind.FRICTION, place.bolts[index, direction], numbers)
+
+
+def friction_numbers(
+    p: Mapping[str, float], stiffness: float, torque_ratio: float
+) -> tuple[float, ...]:
+    """Return the parameters of a friction law, as `PortLawKind` states them.
+
+    Args:
+        p: parameters of the effect.
+        stiffness: of the spring [N/m].
+        torque_ratio: torque over the reference one [-].
+    """
+    # The slip force grows with the preload; the stiffness does not.
+    slip = p["slip"] * torque_ratio ** p["torque_exponent"]
+    way = next(way for way, key in _EXPONENTS.items() if key in p)
+    exponents = p[_EXPONENTS[way]], p.get("unloading", 0.0)
+    return stiffness * p["share"], slip, float(way), *exponents

@@ -11,7 +11,7 @@ from jointbench.simulators.flexible.closed_structure import ClosedStructure
 from jointbench.simulators.flexible.friction_and_stops import (
     BoltLaw,
     PortLawKind,
-    PortMemory,
+    forces_along,
     law_bank,
 )
 from jointbench.simulators.flexible.gauss_integration import HitSet, integrate_hits
@@ -34,14 +34,7 @@ def law(way: Yielding, exponent: float, unloading: float = 0.0) -> BoltLaw:
 
 def sums(one: BoltLaw, path: FloatArray) -> FloatArray:
     """Return S along a path [m]."""
-    bank = law_bank((one,), 1)
-    assert bank is not None
-    memory, found = PortMemory(bank, 1), []
-    for r in path:
-        point = np.array([[r], [0.0]])
-        memory.commit(np.vstack((point, point)), point)
-        found.append(float(memory.force[0, 0]))
-    return np.array(found) / one.parameters[0] + path
+    return forces_along(one, path) / one.parameters[0] + path
 
 
 def weaker(way: Yielding, exponent: float, phi: FloatArray) -> FloatArray:

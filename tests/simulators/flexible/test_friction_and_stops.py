@@ -3,27 +3,13 @@
 import numpy as np
 import pytest
 
-from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.flexible.friction_and_stops import (
     BoltLaw,
     PortLawKind,
-    PortMemory,
-    law_bank,
+    forces_along,
 )
 
 ROW = np.ones(1)
-
-
-def forces(law: BoltLaw, path: FloatArray) -> FloatArray:
-    """Return the force of a law along a path of its port [N]."""
-    bank = law_bank((law,), 1)
-    assert bank is not None
-    memory, found = PortMemory(bank, 1), []
-    for r in path:
-        point = np.array([[r], [0.0]])
-        memory.commit(np.vstack((point, point)), point)
-        found.append(float(memory.force[0, 0]))
-    return np.array(found)
 
 
 @pytest.mark.parametrize(
@@ -41,5 +27,5 @@ def test_laws_without_memory_have_their_closed_forms(
     kind: PortLawKind, parameters: tuple[float, float], motion: float, force: float
 ) -> None:
     """One motion, one force."""
-    found = forces(BoltLaw(kind, ROW, parameters), np.array([motion]))
+    found = forces_along(BoltLaw(kind, ROW, parameters), np.array([motion]))
     assert found[0] == pytest.approx(force)
