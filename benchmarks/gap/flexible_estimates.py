@@ -6,7 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.analysis.gap.structure_response.port_laws import iwan_sliders
+from jointbench.analysis.gap.structure_response.port_laws import weibull_sliders
+from jointbench.simulators.flexible.friction_and_stops import (
+    BoltLaw,
+    PortLawKind,
+    forces_along,
+)
+from jointbench.simulators.flexible.hidden_in_joint import friction_numbers
 
 Json = dict[str, Any]
 _OWN_NAMES = {
@@ -21,8 +27,10 @@ _POWERS = {"cubic": "k3", "quadratic": "k2", "damping_law": "c2"}
 """Coefficients of laws without a further parameter."""
 _AMPLITUDES = (0.3, 0.6, 1.0)
 """Of a loop, over the largest slip displacement or over the reach of a law."""
-_FINE = 1e-3
-"""Onset of the true micro-slip: its smallest sliders are far below any motion."""
+_REACH = {"microslip": 2.0, "macroslip": 10.0}
+"""Amplitude of the widest loop of friction, over the true slip displacement."""
+_TURNS, _POINTS = 4, 400
+"""Cycles after which a loop is closed, and points of a cycle."""
 
 
 def effect_pairs(run: Json) -> Iterator[tuple[str, float, float, float]]:
@@ -81,9 +89,9 @@ def true_base(physical: Mapping[str, Any]) -> dict[str, float]:
 def loop_error(run: Json) -> float | None:
     """Return the largest relative error of the loops of a right law at a bolt.
 
-    Of friction, the energy of a cycle at three amplitudes up to the largest slip
-    displacement, in shares of the spring; of a stop, the largest force up to three
-    times its gap; of the other laws, their coefficient.
+    Of friction, the energy of a cycle at three amplitudes, in shares of the spring; of
+    a stop, the largest force up to three times its gap; of the other laws, their
+    coefficient.
 
     Returns:
         None if the effect is no law.
@@ -105,15 +113,37 @@ def _loop(
     name: str, values: Mapping[str, float], share: float, true: Mapping[str, float]
 ) -> float:
     """Return the energy of a cycle of friction, or the force of another law."""
-    if name == "microslip":
-        slips, weights = iwan_sliders(
-            values["phimax"], values["chi"] + 2.0, values.get("onset", _FINE)
-        )
-        beyond = np.maximum(share * true["phimax"] - slips, 0.0)
-        return float(values["share"] * np.sum(weights * slips * beyond))
-    if name == "macroslip":
-        beyond_slip = max(10.0 * share * true["slip"] - values["slip"], 0.0)
-        return values["share"] * values["slip"] * beyond_slip
+    if name in _REACH:
+        amplitude = _REACH[name] * share * true["slip"]
+        if "shape" not in values:
+            return _true_cycle(values, amplitude)
+        return values["share"] * _cycle(values, amplitude)
     if name == "clearance":
         return values["k"] * max(3.0 * share * true["g"] - values["g"], 0.0)
     return abs(values[_POWERS[name]])
+
+
+def _true_cycle(true: Mapping[str, float], amplitude: float) -> float:
+    """Return the energy of a cycle of the simulated law, over the spring [m^2]."""
+    law = BoltLaw(PortLawKind.FRICTION, np.ones(1), friction_numbers(true, 1.0, 1.0))
+    turns = np.linspace(0.0, 2.0 * np.pi * _TURNS, _POINTS * _TURNS + 1)
+    path = amplitude * np.sin(turns)
+    last = slice(-_POINTS - 1, None)
+    force, motion = (forces_along(law, path) + true["share"] * path)[last], path[last]
+    return float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
+
+
+def _cycle(found: Mapping[str, float], amplitude: float) -> float:
+    """Return the energy of a cycle of the sliders found, over their spring [m^2].
+
+    Of a gradual one, which unloads by F along its spring and then follows tanh over
+    2 A - F, with F = tanh (2 A - F), it is 2 ln cosh (2 A - F) - F^2.
+    """
+    slips, weights = weibull_sliders(found["slip"], found["shape"])
+    gradual = found.get("gradual", 0.0)
+    sharp = 4.0 * float(weights @ (slips * np.maximum(amplitude - slips, 0.0)))
+    way, force = 2.0 * amplitude / found["slip"], 0.0
+    for _ in range(200):
+        force = 0.5 * (force + float(np.tanh(way - force)))
+    smooth = found["slip"] ** 2 * (2.0 * np.log(np.cosh(way - force)) - force**2)
+    return (1.0 - gradual) * sharp + gradual * float(smooth)

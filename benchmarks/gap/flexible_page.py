@@ -33,9 +33,11 @@ _HEAD = """# The gap on bolted bodies: how often the verdict is right
 Made by `benchmarks/gap/flexible_page.py` on {date} from {count} diagnoses by the
 command. The simulated benches ([flexible-benches.md](flexible-benches.md)) differ from
 the model in discretisation and integrator, and in everything the nominal values leave
-open. Effects have a margin of 50 or more. Shares have 95 % Wilson intervals; seeds of
-a row begin at the one stated and are consecutive, but for those whose effect is counted
-apart: {apart}.
+open; their friction is drawn among laws that the model does not have
+([0481](decisions/0481-friction-of-simulated-bolts-is-drawn-among-laws.md)). Effects
+have a margin of 50 or more. Shares have 95 % Wilson intervals; seeds of a row begin at
+the one stated and are consecutive, but for those whose effect is counted apart:
+{apart}.
 
 ## Verdicts
 

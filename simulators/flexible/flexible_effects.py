@@ -146,28 +146,41 @@ def _rockable(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
 
 
 def _micro_slip(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
-    """Return friction at all bolts that never slips as a whole."""
+    """Return friction at all bolts that yields from the smallest motion on."""
     travel = float(np.median(s.travel[:, :2].max(axis=1)))
+    ways = (
+        {"yield_exponent": _log(rng, 0.5, 2.0)},
+        {"contact_exponent": _log(rng, 1.5, 4.0)},
+    )
     return _effect(
         {"bolt": "all"},
         share=float(rng.uniform(0.35, 0.8)),
-        phimax=travel * _log(rng, 0.5, 3.0),
-        chi=float(rng.uniform(-0.7, 0.0)),
+        slip=travel * _log(rng, 0.3, 2.0),
         torque_exponent=float(rng.choice((0.0, 1.0))),
+        **ways[int(rng.integers(len(ways)))],
     )
 
 
 def _macro_slip(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
-    """Return one slider at a bolt, or one at each, that slips at the upper levels."""
+    """Return friction at a bolt, or at each, that slips at the upper levels."""
     where = _bolt(s, rng)
     travel = float(s.travel[int(where["bolt"]), :2].max())
     if rng.random() < 0.4:
         where, travel = {"bolt": "all"}, float(np.median(s.travel[:, :2].max(axis=1)))
+    ways = (
+        {"yield_exponent": _log(rng, 3.0, 12.0)},
+        {"contact_exponent": _log(rng, 1.03, 1.3)},
+        {
+            "bouc_wen_exponent": _log(rng, 1.5, 6.0),
+            "unloading": float(rng.uniform(0.5, 0.8)),
+        },
+    )
     return _effect(
         where,
         share=float(rng.uniform(0.4, 0.85)),
         slip=travel * _log(rng, 0.05, 0.4),
         torque_exponent=float(rng.choice((0.0, 1.0))),
+        **ways[int(rng.integers(len(ways)))],
     )
 
 

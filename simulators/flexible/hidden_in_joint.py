@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """What hidden effects change in the structure: its linear joint, its laws, its rows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.simulators.flexible.bolt_friction import Yielding
 from jointbench.simulators.flexible.closed_structure import (
     NORMAL,
     Coordinates,
@@ -20,14 +21,15 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BodyPlace,
     BoltedSpecimen,
 )
-from jointbench.simulators.flexible.friction_and_stops import (
-    BoltLaw,
-    PortLawKind,
-    power_law_sliders,
-)
+from jointbench.simulators.flexible.friction_and_stops import BoltLaw, PortLawKind
 from jointbench.simulators.flexible.joint_values import BoltValues
 
 TANGENTIAL = (0, 1)
+_EXPONENTS = {
+    Yielding.RICHARD_ABBOTT: "yield_exponent",
+    Yielding.CONTACT: "contact_exponent",
+    Yielding.BOUC_WEN: "bouc_wen_exponent",
+}
 _RATTLER_DAMPING, _RATTLER_FREQUENCY = 0.05, 4.0  # [-], [Hz]: it rests in its cavity
 _RATTLER_STIFFNESS = 400.0  # [Hz], as frequency of its mass on its stop
 
@@ -220,17 +222,28 @@ def _friction(
     effect: FlexibleEffect,
     condition: HitCondition,
 ) -> Iterator[BoltLaw]:
-    """Yield the sliders of the tangential directions of one bolt or of all."""
+    """Yield the friction of the tangential directions of one bolt or of all."""
     p, bolt = effect.parameters, effect.where["bolt"]
     bolts = range(place.bolts.shape[0]) if bolt == "all" else (int(bolt),)
-    # The slip force grows with the preload; the stiffness does not.
-    grown = condition.torque_ratio ** p["torque_exponent"]
-    if effect.name == "microslip":
-        weights, slips = power_law_sliders(p["phimax"] * grown, p["chi"])
-    else:
-        weights, slips = np.ones(1), np.array([p["slip"] * grown])
     for index in bolts:
         for direction in TANGENTIAL:
-            k = float(state.values.stiffness[index, direction]) * p["share"]
-            row = place.bolts[index, direction]
-            yield BoltLaw(PortLawKind.FRICTION, row, (k, 0.0), weights, slips)
+            k = float(state.values.stiffness[index, direction])
+            numbers = friction_numbers(p, k, condition.torque_ratio)
+            yield BoltLaw(PortLawKind.FRICTION, place.bolts[index, direction], numbers)
+
+
+def friction_numbers(
+    p: Mapping[str, float], stiffness: float, torque_ratio: float
+) -> tuple[float, ...]:
+    """Return the parameters of a friction law, as `PortLawKind` states them.
+
+    Args:
+        p: parameters of the effect.
+        stiffness: of the spring [N/m].
+        torque_ratio: torque over the reference one [-].
+    """
+    # The slip force grows with the preload; the stiffness does not.
+    slip = p["slip"] * torque_ratio ** p["torque_exponent"]
+    way = next(way for way, key in _EXPONENTS.items() if key in p)
+    exponents = p[_EXPONENTS[way]], p.get("unloading", 0.0)
+    return stiffness * p["share"], slip, float(way), *exponents

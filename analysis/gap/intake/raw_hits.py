@@ -66,6 +66,8 @@ def bad_hit(hit: QuietHit, volts: FloatArray, full_scale: float, aimed: float) -
     peak = float(force.max())
     if peak < HITS.glancing_share * aimed or peak < HITS.peak_noise_sd * noise:
         return f"glancing: peak of {peak:.3g} N, aimed at {aimed:g} N"
+    if peak > HITS.hard_share * aimed:
+        return f"overload: peak of {peak:.3g} N, aimed at {aimed:g} N"
     contacts = _contacts(force, max(HITS.second_share * peak, 8 * noise))
     if contacts > 1:
         return f"double: {contacts} contacts of the hammer"

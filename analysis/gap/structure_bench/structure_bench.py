@@ -69,7 +69,8 @@ class StructureBench:
             shape (n_records, 4).
         sigma: sd of the residual [m/s^2], shape (n_records, n_channels).
         directions: derivatives of the response by directions of unit sd, shape
-            (n_records, 5, n_channels, n_samples); None before they are computed.
+            (n_records, 5, n_channels, n_samples), or as many samples as a window has;
+            None before they are computed.
         reach: largest deviation of a base coordinate [sd].
         blocks: records as groups.
         scales: words to values.
@@ -290,6 +291,7 @@ class StructureBench:
         terms: Sequence[Term],
         landing: FloatArray,
         floor: float,
+        window: float | None = None,
     ) -> "StructureBench":
         """Return the bench expanded about landing points, with a floor.
 
@@ -298,9 +300,10 @@ class StructureBench:
             terms: effects there.
             landing: tilts and offsets of each hit, shape (n_records, 4).
             floor: error of the model, as a share of the peak [-].
+            window: to which the bench is fitted, or shorter ones [s]; None for any.
         """
         moved = replace(self, landing=landing, kept=_frames_of(self.kept))
-        model = moved.model(base, terms, None)
+        model = moved.model(base, terms, window)
         rows = direction_rows(model, landing, self.direction_sd)
         peak = np.abs(self.campaign.hits.response).max(axis=2)
         known = np.hypot(self.campaign.hits.noise, floor * peak)

@@ -9,7 +9,6 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Effect, Site
 from jointbench.analysis.gap.model.effect_parameter import (
     Parameter,
-    Reported,
     Transform,
 )
 from jointbench.analysis.gap.structure_bench.body_effects import BODY_EFFECTS
@@ -31,49 +30,22 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_response.port_laws import (
     LawForm,
     PortLaws,
-    iwan_sliders,
+    weibull_sliders,
 )
 
 
 def _slide(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
-    share, largest, power, preload, onset, gradual = (float(v) for v in values)
-    slips, weights = iwan_sliders(largest, power, onset)
+    share, slip, shape, preload = (float(v) for v in values[:4])
+    gradual = float(values[4]) if values.size > 4 else 0.0
     ports = tangential_ports(campaign, state, site)
-    return _with_friction(state, ports, share, (slips, weights, gradual), preload)
-
-
-def _slip(
-    state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
-) -> JointState:
-    share, slip, preload, gradual = (float(v) for v in values)
-    ports = tangential_ports(campaign, state, site)
-    sliders = np.array([slip]), np.ones(1), gradual
-    return _with_friction(state, ports, share, sliders, preload)
-
-
-def _with_friction(
-    state: JointState,
-    ports: tuple[int, ...],
-    share: float,
-    sliders: tuple[FloatArray, FloatArray, float],
-    preload: float,
-) -> JointState:
-    """Return a state with sliders at ports.
-
-    Args:
-        state: of the model.
-        ports: joint freedoms.
-        share: of the stiffness of the port that the sliders hold [-].
-        sliders: slip displacements [m], weights, and share of each that yields
-            gradually [-].
-        preload: power of the slip displacements in the bolt torque [-].
-    """
-    slips, weights, gradual = sliders
-    both = np.concatenate([(1.0 - gradual) * weights, gradual * weights])
+    slips, weights = weibull_sliders(slip, shape)
+    if values.size > 4:
+        weights = np.append((1.0 - gradual) * weights, gradual)
+        slips = np.append(slips, slip)
     laws = PortLaws(
-        ports, share, np.tile(slips, 2), both, preload=preload, gradual=slips.size
+        ports, share, slips, weights, preload=preload, gradual=int(values.size > 4)
     )
     return replace(state, laws=(*state.laws, laws))
 
@@ -92,17 +64,6 @@ def _at_bolt(kind: LawForm) -> Change:
     return change
 
 
-def _iwan(values: FloatArray) -> tuple[Reported, ...]:
-    return (
-        Reported("share", "-", float(values[0])),
-        Reported("phimax", "m", float(values[1])),
-        Reported("chi", "-", float(values[2] - 2.0)),
-        Reported("torque_exponent", "-", float(values[3])),
-        Reported("onset", "-", float(values[4])),
-        Reported("gradual", "-", float(values[5])),
-    )
-
-
 def _law(
     name: str,
     family: str,
@@ -118,14 +79,40 @@ def _law(
     )
 
 
-_SEGALMAN = "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)"
+_MICRO_SHAPE = 2.1
+"""Shape above which a joint hardly yields before it slips as a whole: 2 % of the
+stiffness slips at a sixth of the slip displacement."""
+_WEIBULL = "Iwan 1966, J. Appl. Mech. 33, 893, with strengths of Weibull 1951"
 _SHARE = Parameter("share", "-", lower=0.0, upper=1.0, off=0.0)
 _PRELOAD = Parameter(
     "torque_exponent", "-", lower=-0.5, upper=2.0, starts=(0.0, 1.0), prior=(0.5, 1.0)
 )
 _GRADUAL = Parameter(
-    "gradual", "-", lower=0.0, upper=1.0, starts=(0.7,), prior=(0.5, 0.5)
+    "gradual", "-", lower=0.0, upper=1.0, starts=(0.2,), prior=(0.5, 0.5)
 )
+
+
+def _slip(lower: float, upper: float, *starts: float) -> Parameter:
+    """Return the mean slip displacement, over the largest motion of the bolts."""
+    log = Transform.LOG
+    return Parameter(
+        "slip", "m", "travel", lower=lower, upper=upper, starts=starts, transform=log
+    )
+
+
+def _shape(lower: float, upper: float, start: float) -> Parameter:
+    """Return the shape of the distribution of strengths."""
+    log, prior = Transform.LOG, (start, 0.7)
+    return Parameter(
+        *("shape", "-"),
+        lower=lower,
+        upper=upper,
+        starts=(start,),
+        transform=log,
+        prior=prior,
+    )
+
+
 LAW_EFFECTS: tuple[StructureEffect, ...] = (
     StructureEffect(
         Effect(
@@ -133,38 +120,11 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             "friction",
             (
                 _SHARE,
-                Parameter(
-                    "phimax",
-                    "m",
-                    "travel",
-                    lower=0.02,
-                    upper=100.0,
-                    starts=(0.3, 1.5, 6.0),
-                    transform=Transform.LOG,
-                ),
-                Parameter(
-                    "chi_plus_2",
-                    "-",
-                    lower=1.05,
-                    upper=2.2,
-                    starts=(1.6,),
-                    transform=Transform.LOG,
-                    prior=(1.6, 0.3),
-                ),
+                _slip(0.01, 100.0, 0.1, 0.5, 2.0),
+                _shape(0.3, _MICRO_SHAPE, 1.0),
                 _PRELOAD,
-                Parameter(
-                    "onset",
-                    "-",
-                    lower=0.005,
-                    upper=0.5,
-                    starts=(0.05,),
-                    transform=Transform.LOG,
-                    prior=(0.05, 1.5),
-                ),
-                _GRADUAL,
             ),
-            _SEGALMAN,
-            report=_iwan,
+            _WEIBULL,
             has_sliders=True,
         ),
         sliding_bolts,
@@ -178,23 +138,16 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             "friction",
             (
                 _SHARE,
-                Parameter(
-                    "slip",
-                    "m",
-                    "travel",
-                    lower=1e-3,
-                    upper=10.0,
-                    starts=(0.03, 0.1, 0.3),
-                    transform=Transform.LOG,
-                ),
+                _slip(1e-3, 10.0, 0.03, 0.1, 0.3),
+                _shape(_MICRO_SHAPE, 30.0, 5.0),
                 _PRELOAD,
                 _GRADUAL,
             ),
-            "Jenkins element: Gaul and Nitsche 2001, Appl. Mech. Rev. 54, 93",
+            _WEIBULL,
             has_sliders=True,
         ),
         each_sliding_bolt,
-        _slip,
+        _slide,
         nonlinear=True,
     ),
     _law(

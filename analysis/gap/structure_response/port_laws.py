@@ -61,29 +61,32 @@ def law_ports(laws: tuple[PortLaws, ...]) -> tuple[int, ...]:
     return tuple(port for law in laws for port in law.ports)
 
 
-def iwan_sliders(
-    largest: float, power: float, onset: float = 0.0
-) -> tuple[FloatArray, FloatArray]:
-    """Return slip displacements [m] and weights of sliders of one Iwan element.
+def weibull_sliders(slip: float, shape: float) -> tuple[FloatArray, FloatArray]:
+    """Return slip displacements [m] and weights of sliders with spread strengths.
 
-    The stiffness below a slip displacement phi is (phi / largest)^power, as in the
-    effect ``iwan`` of lumped joints. All of it below the onset is one slider, so that
-    smaller motions do not slip. Further cells end at a constant ratio: soft hits slip
-    the weak sliders alone. A slider sits at the mean slip displacement of its cell.
+    The stiffness that slips below a displacement phi is 1 - exp(-(phi / scale)^shape)
+    of the whole. Cells end at a constant ratio, so that soft hits, which slip the weak
+    sliders alone, meet as many as hard ones; a slider sits at the mean slip
+    displacement of its cell.
 
     Args:
-        largest: slip displacement [m].
-        power: chi + 1 of Segalman's density [-], above 0; chi + 2 with the chi that
-            `iwan` reports, which is one less.
-        onset: end of the first cell over the largest slip displacement [-], below 1; 0
-            for one over the number of sliders.
+        slip: mean slip displacement: limiting force over stiffness [m].
+        shape: [-]; below 2 yielding begins with the smallest motion, far above 2 all
+            slip at once.
 
     Source:
-        Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1).
+        Weibull 1951, J. Appl. Mech. 18, 293, for the strengths; Iwan 1966, J. Appl.
+        Mech. 33, 893, for their sum.
     """
-    count = STRUCTURE.sliders
-    first = onset if onset > 0.0 else 1.0 / count
-    edges = np.concatenate([[0.0], np.geomspace(first, 1.0, count)])
-    weights = np.diff(edges**power)
-    means = np.diff(edges ** (power + 1.0)) / weights * power / (power + 1.0)
-    return largest * means, weights
+    from scipy.special import gamma, gammainc  # slow to import
+
+    scale = slip / float(gamma(1.0 + 1.0 / shape))
+    below, above = STRUCTURE.outer_sliders
+    weakest = float(-np.log1p(-below)) ** (1.0 / shape) * scale
+    first = max(weakest, STRUCTURE.least_slip * slip)
+    last = float(-np.log(above)) ** (1.0 / shape) * scale
+    edges = np.geomspace(first, last, STRUCTURE.sliders - 1)
+    reached = np.concatenate([[0.0], (edges / scale) ** shape, [np.inf]])
+    weights = -np.diff(np.exp(-reached))
+    means = np.diff(gammainc(1.0 + 1.0 / shape, reached)) / weights
+    return slip * means, weights

@@ -6,6 +6,7 @@ landed; only then are all of them fitted.
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -90,7 +91,8 @@ def _settled_in(
     last: Fit | None = None
     for k in range(STRUCTURE.approach_rounds):
         terms = split(x, few.base_sd.size, candidates)
-        few = few.at(x[: few.base_sd.size], terms, landing, few.floor)
+        base = x[: few.base_sd.size]
+        few = few.at(base, terms, landing, few.floor, window.window)
         problem = make_problem(few, candidates)
         before = cost_at(problem, x, window)
         fit = minimise(
@@ -163,7 +165,7 @@ def settled(
             break
     if near and not bench.nonlinear(candidates):
         return bench, fit
-    return bench, fitted_finely(bench, fit.x, candidates, STRUCTURE.fine_iterations)
+    return bench, fitted_finely(bench, fit, candidates, STRUCTURE.fine_iterations)
 
 
 def _met(
@@ -176,30 +178,35 @@ def _met(
     """Return the bench at a start, about where its hits landed if that is near."""
     n = bench.base_sd.size
     terms = split(start, n, candidates)
-    bench = bench.at(start[:n], terms, bench.landing, bench.table_floor)
-    for window in STRUCTURE.landing_windows if near else ():
+    windows = (*STRUCTURE.landing_windows, None) if near else (None,)
+    bench = bench.at(start[:n], terms, bench.landing, bench.table_floor, windows[0])
+    for window, following in pairwise(windows):
         landing, _ = bench.landed(start[:n], terms, window)
-        bench = bench.at(start[:n], terms, landing, bench.floor)
+        bench = bench.at(start[:n], terms, landing, bench.floor, following)
     return bench
 
 
 def fitted_finely(
-    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate], steps: int
+    bench: StructureBench,
+    start: FloatArray | Fit,
+    candidates: Sequence[Candidate],
+    steps: int,
 ) -> Fit:
     """Fit whole records with the time integration that is judged.
 
     Args:
         bench: all records.
-        x: coordinates.
+        start: coordinates; or a fit with laws whose slopes are kept until a step fails.
         candidates: effects.
         steps: most steps, if a law is integrated at all.
     """
     problem = make_problem(bench, candidates)
     if not bench.nonlinear(candidates):
+        x = start.x if isinstance(start, Fit) else start
         return minimise(problem, x, FULL, iterations=0)
     return minimise(
         problem,
-        x,
+        start,
         FINE,
         iterations=steps,
         jacobian_resolution=FULL,

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
+from scipy.integrate import quad
+from scipy.special import gamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_response.base_layout import base_layout
@@ -26,7 +28,7 @@ from jointbench.analysis.gap.structure_response.landing import (
 from jointbench.analysis.gap.structure_response.port_laws import (
     LawForm,
     PortLaws,
-    iwan_sliders,
+    weibull_sliders,
 )
 
 NOMINAL = NominalBench(
@@ -108,7 +110,7 @@ def test_laws_at_four_bolts_are_those_of_an_integrator(
     Alone, a part of each yields gradually, as the law of Bouc and Wen does.
     """
     made = campaign()
-    slips, weights = iwan_sliders(1e-6, 1.6)
+    slips, weights = weibull_sliders(7e-7, 1.2)
     ports = tuple(3 * k + d for k in range(4) for d in (0, 1))
     linear = state_at(made)
     slides = PortLaws(ports, 0.5, slips, weights)
@@ -129,7 +131,7 @@ def test_fits_take_coarser_steps_than_what_is_judged() -> None:
     """In fits, friction is within 2e-4 of the peak and other laws within 2e-3."""
     made, weights = campaign(), landing_weights(LANDING)
     frame = hit_frame(made.hits, made.hits.force.shape[1])
-    slips, shares = iwan_sliders(1e-6, 1.6)
+    slips, shares = weibull_sliders(7e-7, 1.2)
     slides = PortLaws((0, 1, 3, 4), 0.5, slips, shares)
     for laws, allowed in (((slides,), 2e-4), (FOUR_LAWS, 2e-3)):
         state = replace(state_at(made), laws=laws)
@@ -140,14 +142,22 @@ def test_fits_take_coarser_steps_than_what_is_judged() -> None:
         assert 1e-6 < distance(coarse, fine) < allowed
 
 
-def test_sliders_below_the_onset_slip_together() -> None:
-    """Their weight and mean slip displacement are those of the density."""
-    slips, weights = iwan_sliders(2e-6, 1.5, 0.2)
+@pytest.mark.parametrize("shape", [0.4, 1.0, 2.1, 8.0])
+def test_sliders_hold_what_a_weibull_distribution_of_strengths_holds(
+    shape: float,
+) -> None:
+    """Stiffness 1, limit the mean; between them the integral of the survival."""
+    slip = 3e-6
+    slips, weights = weibull_sliders(slip, shape)
     assert weights.sum() == pytest.approx(1.0)
-    assert weights[0] == pytest.approx(0.2**1.5)
-    assert slips[0] == pytest.approx(2e-6 * 0.2 * 1.5 / 2.5)
-    plain, shares = iwan_sliders(2e-6, 1.5)
-    assert weights @ slips == pytest.approx(shares @ plain)
+    assert weights @ slips == pytest.approx(slip)
+    scale = slip / gamma(1.0 + 1.0 / shape)
+    for motion in slip * np.array([0.05, 0.3, 1.0, 3.0]):
+        held = weights @ np.minimum(slips, motion)
+        whole, _ = quad(
+            lambda phi: np.exp(-((phi / scale) ** shape)), 0.0, motion, epsrel=1e-8
+        )
+        assert held == pytest.approx(whole, rel=7e-3)
 
 
 CHANGES: dict[str, dict[str, Any]] = {
