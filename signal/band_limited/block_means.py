@@ -72,7 +72,8 @@ def block_means(lines: FloatArray, count: int, degree: int) -> BlockMeans:
     size = lines.shape[1] // count
     used = lines[:, : size * count].reshape(lines.shape[0], count, size)
     place = np.linspace(-1, 1, count)
-    trend = np.ascontiguousarray(np.polynomial.legendre.legvander(place, degree))
+    vander = np.polynomial.legendre.legvander(place, degree)
+    trend = np.ascontiguousarray(vander, dtype=np.float64)
     return BlockMeans(np.ascontiguousarray(used.mean(axis=2).T), size, trend)
 
 

@@ -64,9 +64,9 @@ from jointbench.analysis.gap.response.slider_integration import (
     bank_forces,
 )
 
-VERSIONS = ((1,), (1, 2), (1, 2, 3), (1, 2, 3, 4))
+VERSIONS = ((1,), (1, 2))
 """Arguments that choose the compiled version, since the length of a tuple is a constant
-for the compiler: one port, several ports, and the same with laws of real joints."""
+for the compiler: one port, or several ports."""
 
 
 @compiled(fastmath=True, forceinline=True)
@@ -208,7 +208,7 @@ def _integrate_lanes(
     out: FloatArray,
 ) -> None:
     """Integrate as many records as there are lanes, beginning at `first`."""
-    several, further = len(version) % 2 == 0, len(version) > 2
+    several = len(version) > 1
     n_ports = displacement.shape[0] if several else 1
     n_laws = laws.kinds.size
     coupled = w.size - (n_ports * n_ports * LANES if several else 0)
@@ -240,7 +240,7 @@ def _integrate_lanes(
                     force=a * LAW + OWN,
                 )
                 bank_forces(bank, w, f, states, active, sliders, tables, tops)
-            elif further and kinds[a] > CURVES:
+            elif kinds[a] > CURVES:
                 force_of_real_joint(a, port, w, f, kinds, p)
             else:
                 force_without_memory(a, port, w, f, kinds, p, curves)

@@ -22,7 +22,7 @@ from jointbench.analysis.gap.response.force_integration import (
     LaneModes,
     integrate_forces,
 )
-from jointbench.analysis.gap.response.law_forces import CURVES, LANES, MOVING
+from jointbench.analysis.gap.response.law_forces import LANES, MOVING
 from jointbench.analysis.gap.response.packed_laws import pack_laws
 
 
@@ -136,8 +136,7 @@ def port_forces(
         [x.law for x in laws], [x.port for x in laws], band_limited=band_limited
     )
     scaled = modes.scaled()
-    further = any(x.law.kind > CURVES for x in laws)
-    version = VERSIONS[2 * further + (count > 1)]
+    version = VERSIONS[count > 1]
 
     def integrated(every: int) -> FloatArray:
         rows = np.ascontiguousarray(motions[:, :, ::every])
