@@ -95,13 +95,14 @@ def content_digest(file: h5py.File) -> str:
     """Return the SHA-256 of the content of a file, as hexadecimal text."""
     digest = sha256()
     waiting: list[tuple[str, h5py.Group | h5py.Dataset]] = [("/", file)]
+    scales: dict[int, str] = {}
     while waiting:
         path, item = waiting.pop()
         digest.update(f"{path}\n".encode("utf-8", "surrogateescape"))
         for text in _attributes(item):
             digest.update(text)
         if isinstance(item, h5py.Dataset):
-            digest.update(_kind(item))
+            digest.update(_kind(item, scales))
             for piece in _pieces(item):
                 digest.update(piece)
         else:
@@ -125,8 +126,8 @@ def _attributes(item: h5py.Group | h5py.Dataset) -> Iterator[bytes]:
         yield f"{name} {values.dtype.str} {values.shape}\n".encode() + data
 
 
-def _kind(dataset: h5py.Dataset) -> bytes:
-    names = " ".join(dimension_names(dataset))
+def _kind(dataset: h5py.Dataset, scales: dict[int, str]) -> bytes:
+    names = " ".join(dimension_names(dataset, scales))
     return f"{dataset.dtype.str} {dataset.shape} {names}\n".encode()
 
 

@@ -337,23 +337,22 @@ def _check_attributes(
         raise tally.refuse(name, f"brings the file to {tally.attributes} attributes")
     for i in range(count):
         attribute = h5a.open(target, index=i)
-        if attribute.name in _SCALE_ATTRIBUTES or (
-            tally.limits.matlab and attribute.name == _FIELD_NAMES
-        ):
+        # Asked once: each answer makes an object of HDF5.
+        own = attribute.name
+        if own in _SCALE_ATTRIBUTES or (tally.limits.matlab and own == _FIELD_NAMES):
             continue
-        kind = attribute.get_type()
-        size = math.prod(attribute.shape or (1,)) * kind.get_size()
-        single = math.prod(attribute.shape or (1,)) <= 1
+        kind, values = attribute.get_type(), math.prod(attribute.shape or (1,))
+        size = values * kind.get_size()
         text = isinstance(kind, h5t.TypeStringID)
         if kind.get_class() not in _NUMBERS or (
-            text and kind.is_variable_str() and not single
+            text and values > 1 and kind.is_variable_str()
         ):
             raise tally.refuse(
-                f"{name}@{attribute.name.decode('utf-8', 'replace')}",
+                f"{name}@{own.decode('utf-8', 'replace')}",
                 "is an attribute of neither numbers nor text",
             )
         if size > tally.limits.attribute_bytes:
             raise tally.refuse(
-                f"{name}@{attribute.name.decode('utf-8', 'replace')}",
+                f"{name}@{own.decode('utf-8', 'replace')}",
                 f"is an attribute of {size} bytes",
             )

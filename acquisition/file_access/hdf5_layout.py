@@ -2,7 +2,7 @@
 """Groups of an open HDF5 file, and the axes of its datasets."""
 
 import h5py
-from h5py import h5ds, h5i
+from h5py import h5ds, h5i, h5o
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.netcdf_write import NO_VARIABLE
@@ -20,15 +20,24 @@ def find_group(parent: h5py.Group, name: str) -> h5py.Group | None:
     return found
 
 
-def dimension_names(dataset: h5py.Dataset) -> tuple[str, ...]:
-    """Return the name of each axis, empty where it has none."""
-    names = [_first_scale(dataset.id, axis) for axis in range(dataset.id.rank)]
-    if names == [""] and h5ds.is_scale(dataset.id):
-        return (_last_part(dataset.id),)
-    return tuple(names)
+def dimension_names(
+    dataset: h5py.Dataset, known: dict[int, str] | None = None
+) -> tuple[str, ...]:
+    """Return the name of each axis, empty where it has none.
+
+    Args:
+        dataset: of an open file.
+        known: names by address of the scale, for many datasets of that file; those that
+            are looked up are added.
+    """
+    names = {} if known is None else known
+    found = [_first_scale(dataset.id, axis, names) for axis in range(dataset.id.rank)]
+    if found == [""] and h5ds.is_scale(dataset.id):
+        return (_last_part(dataset.id, names),)
+    return tuple(found)
 
 
-def _first_scale(dataset: h5py.h5d.DatasetID, axis: int) -> str:
+def _first_scale(dataset: h5py.h5d.DatasetID, axis: int, known: dict[int, str]) -> str:
     """Return the name of the first scale of an axis, empty without one.
 
     Without the objects that `Dataset.dims` makes for each axis and scale: a result has
@@ -36,15 +45,19 @@ def _first_scale(dataset: h5py.h5d.DatasetID, axis: int) -> str:
     """
     if h5ds.get_num_scales(dataset, axis) < 1:
         return ""
-    return _last_part(h5ds.iterate(dataset, axis, lambda scale: scale))
+    return _last_part(h5ds.iterate(dataset, axis, lambda scale: scale), known)
 
 
-def _last_part(place: h5py.h5d.DatasetID) -> str:
-    """Return the last part of the path of a dataset; "None" if it has none."""
-    path = h5i.get_name(place)
-    if path is None:
-        return "None"
-    return str(path.decode("utf-8", "surrogateescape")).rsplit("/", 1)[-1]
+def _last_part(place: h5py.h5d.DatasetID, known: dict[int, str]) -> str:
+    """Return the last part of the path of a dataset; "None" if it has none.
+
+    For the path HDF5 searches the file, and few scales serve all axes.
+    """
+    address = int(h5o.get_info(place).addr)
+    if address not in known:
+        path = h5i.get_name(place) or b"None"
+        known[address] = path.decode("utf-8", "surrogateescape").rsplit("/", 1)[-1]
+    return known[address]
 
 
 def is_dimension_only(dataset: h5py.Dataset) -> bool:

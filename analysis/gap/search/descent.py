@@ -2,6 +2,7 @@
 """Minimise the cost by the Levenberg-Marquardt method, coarse to fine."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -69,23 +70,11 @@ _NO_SLOPES = np.zeros((0, 0))
 """In the place of slopes that are computed again: two sets double the memory."""
 
 
-def minimise(
-    problem: FitProblem,
-    start: FloatArray | Fit,
-    resolution: Resolution = FULL,
-    *,
-    iterations: int = 20,
-    rival: float | None = None,
-    jacobian_resolution: Resolution | None = None,
-    exact_slopes: bool = True,
-    least_drop: float = 0.0,
-) -> Fit:
-    """Minimise the cost from one start.
+@dataclass(frozen=True, slots=True)
+class Descent:
+    """How far a descent goes.
 
-    Args:
-        problem: least-squares problem.
-        start: coordinates, shape (n,); or a fit of nearly the same problem, whose
-            slopes are kept until a step fails.
+    Attributes:
         resolution: window and step of the residual.
         iterations: largest number of steps.
         rival: cost of the best fit so far; a descent that would need very many more
@@ -97,33 +86,85 @@ def minimise(
             not converge to a fraction of a unit of chi2.
     """
 
-    def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
-        if jacobian_resolution is None:
-            return jacobian_of(problem, x, r, resolution)
-        coarse = problem.residual(x, jacobian_resolution)
-        return jacobian_of(problem, x, coarse, jacobian_resolution)
+    resolution: Resolution = FULL
+    iterations: int = 20
+    rival: float | None = None
+    jacobian_resolution: Resolution | None = None
+    exact_slopes: bool = True
+    least_drop: float = 0.0
 
-    known = start if isinstance(start, Fit) else None
-    x = start.x if isinstance(start, Fit) else start
-    x = np.clip(x, problem.lower, problem.upper)
-    r, cost = _looked_at(problem, x, resolution)
+    def slopes(self, problem: FitProblem, x: FloatArray, r: FloatArray) -> FloatArray:
+        """Return the Jacobian at x, where the residual is r, shape (n_rows, n)."""
+        if self.jacobian_resolution is None:
+            return jacobian_of(problem, x, r, self.resolution)
+        coarse = problem.residual(x, self.jacobian_resolution)
+        return jacobian_of(problem, x, coarse, self.jacobian_resolution)
+
+
+def minimise(
+    problem: FitProblem,
+    start: FloatArray,
+    resolution: Resolution = FULL,
+    *,
+    iterations: int = 20,
+    rival: float | None = None,
+    jacobian_resolution: Resolution | None = None,
+    exact_slopes: bool = True,
+    least_drop: float = 0.0,
+) -> Fit:
+    """Minimise the cost from one start; the options are those of `Descent`.
+
+    Args:
+        problem: least-squares problem.
+        start: coordinates, shape (n,).
+        resolution: window and step of the residual.
+        iterations: largest number of steps.
+        rival: cost of the best fit so far.
+        jacobian_resolution: of the slopes.
+        exact_slopes: slopes at the end are those of the solution.
+        least_drop: of the cost.
+    """
+    how = Descent(
+        resolution, iterations, rival, jacobian_resolution, exact_slopes, least_drop
+    )
+    return descend(problem, start, how)
+
+
+def descend(
+    problem: FitProblem,
+    start: FloatArray,
+    how: Descent,
+    known: FloatArray | None = None,
+) -> Fit:
+    """Minimise the cost from one start.
+
+    Args:
+        problem: least-squares problem.
+        start: coordinates, shape (n,).
+        how: how far.
+        known: slopes of nearly the same problem there, shape (n_rows, n), kept until a
+            step fails. They change in place, since a second set would double the
+            memory. None to compute them.
+    """
+    x = np.clip(start, problem.lower, problem.upper)
+    r, cost = _looked_at(problem, x, how.resolution)
     if not np.isfinite(cost):
         return _pruned(problem, x, r)
     damping, age = SEARCH.least_damping, 0 if known is None else 1
-    j = slopes(x, r) if known is None else known.jacobian
-    for k in range(iterations):
+    j = how.slopes(problem, x, r) if known is None else known
+    for k in range(how.iterations):
         ended = max(
-            least_drop,
+            how.least_drop,
             SEARCH.excess_tolerance * _excess(problem, cost)
             + SEARCH.absolute_tolerance,
         )
         near = _Neighbourhood(problem, x, r, j, cost, SEARCH.promised_share * ended)
-        moved, damping = _step(near, damping, resolution)
+        moved, damping = _step(near, damping, how.resolution)
         if moved is None:
             if age == 0:
                 break
             near.j = j = _NO_SLOPES
-            j, age, damping = slopes(x, r), 0, 1e-3
+            j, age, damping = how.slopes(problem, x, r), 0, 1e-3
             continue
         drop = cost - moved[2]
         small = drop < ended
@@ -132,9 +173,10 @@ def minimise(
         x, r, cost = moved
         if small and (age == 0 or known is not None):
             break
-        if rival is not None and k >= 1 and cost - rival > SEARCH.patience * drop:
-            break
-        if k + 1 == iterations:
+        if how.rival is not None and k >= 1:
+            if cost - how.rival > SEARCH.patience * drop:
+                break
+        if k + 1 == how.iterations:
             age += 1  # no step follows: the slopes are those of the step before
         elif (
             not small
@@ -144,11 +186,11 @@ def minimise(
             j, age = _secant(j, change, r - before), age + 1
         else:
             near.j = j = _NO_SLOPES
-            j, age = slopes(x, r), 0
+            j, age = how.slopes(problem, x, r), 0
         near.j = _NO_SLOPES
-    if age > 0 and exact_slopes:
+    if age > 0 and how.exact_slopes:
         j = _NO_SLOPES
-        j = slopes(x, r)
+        j = how.slopes(problem, x, r)
     return Fit(
         x, problem.n_base, problem.candidates, r, j, cost, problem.prior, problem.centre
     )

@@ -20,7 +20,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import cost_at, minimise
+from jointbench.analysis.gap.search.descent import Descent, cost_at, descend, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.landing import mark_missed
@@ -95,15 +95,14 @@ def _settled_in(
         few = few.at(base, terms, landing, few.floor, window.window)
         problem = make_problem(few, candidates)
         before = cost_at(problem, x, window)
-        fit = minimise(
-            problem,
-            x if last is None else last,
+        how = Descent(
             window,
             iterations=STRUCTURE.approach_iterations,
             rival=None if rival is None else rival * rows,
             exact_slopes=False,
             least_drop=_least_drop(few, candidates, window),
         )
+        fit = descend(problem, x, how, None if last is None else last.jacobian)
         x = fit.x
         # With laws, slopes cost more than all else: those of the last round do.
         last = fit if few.nonlinear(candidates) else None
@@ -159,7 +158,8 @@ def settled(
             # Slopes of all records are the largest array there is: none are kept twice.
             fit = without_slopes(fit)
         before = fit.cost
-        fit = _whole(bench, fit if law else fit.x, candidates, exact=near and not law)
+        known = fit.jacobian if law else None
+        fit = _whole(bench, fit.x, candidates, known, exact=near and not law)
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
         if before - fit.cost < least * fit.cost:
             break
@@ -216,20 +216,20 @@ def fitted_finely(
 
 def _whole(
     bench: StructureBench,
-    start: FloatArray | Fit,
+    start: FloatArray,
     candidates: Sequence[Candidate],
+    known: FloatArray | None = None,
     *,
     exact: bool = False,
 ) -> Fit:
     """Fit whole records, hits as expanded; if exact, with the slopes at the end."""
-    return minimise(
-        make_problem(bench, candidates),
-        start,
+    how = Descent(
         FULL,
         iterations=STRUCTURE.whole_iterations,
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
     )
+    return descend(make_problem(bench, candidates), start, how, known)
 
 
 def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
