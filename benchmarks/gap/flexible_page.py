@@ -101,6 +101,18 @@ def effect_rows(runs: Sequence[Json]) -> Iterable[str]:
         yield f"| {' | '.join(cells)} |"
 
 
+def misses(runs: Sequence[Json]) -> Iterable[str]:
+    """Yield a line for each verdict that is not right, with the reason it states."""
+    for run in runs:
+        if run["word"] == "right":
+            continue
+        margins = ", ".join(f"{value:.0e}" for value in run["margins"].values())
+        hidden = ", ".join(run["names"]) or "nothing"
+        cells = [run["row"], str(run["seed"]), run["truth"]["kind"], hidden]
+        cells += [margins or "-", run["found"]["verdict"], run["found"]["reason"]]
+        yield f"| {' | '.join(cells)} |"
+
+
 def bad_hits(runs: Sequence[Json]) -> tuple[str, str]:
     """Return the shares of bad hits that were found and of good ones left out."""
     found = wanted = dropped = 0
@@ -186,6 +198,9 @@ def page(runs: Sequence[Json]) -> str:
         "\nCPU times are of one core, in part beside other work, which lengthens them.",
         "\n## Single effects\n\n| effect | exact | life |\n|---|---|---|",
         *effect_rows(runs),
+        "\n## Verdicts that are not right\n\n| row | seed | bodies | hidden | margin | "
+        "verdict | its reason |\n|---|---|---|---|---|---|---|",
+        *misses(runs),
     ]
     return "\n".join(lines) + "\n"
 

@@ -2,7 +2,7 @@
 """Diagnosis of hits on bolted bodies: verdict and evidence."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -179,6 +179,8 @@ def _verdict(outcome: SearchOutcome, bench: StructureBench) -> DiagnosisVerdict:
 
 def _gap(bench: StructureBench, fit: Fit) -> Gap:
     held = hold_out_by_steps(fit, bench.blocks)
+    # As in the verdict, in units of the floor.
+    held = replace(held, dof=held.dof / bench.coherence)
     deviation = largest_deviation(fit)
     views = bench.views(fit)
     return Gap(held.gap, held.chi2_per_dof, deviation, views, held.words)

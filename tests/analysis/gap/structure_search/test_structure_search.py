@@ -24,6 +24,9 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
+from jointbench.analysis.gap.structure_search.structure_diagnosis import (
+    diagnose_structure,
+)
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     settled,
@@ -110,6 +113,25 @@ def test_one_effect_may_take_much_of_what_an_accepted_base_leaves(
     assert one_effect_takes_much(bench, base)
     assert takes(replace(base, residual=0.8 * base.residual), base)
     assert not takes(replace(base, residual=0.95 * base.residual), base)
+
+
+def test_the_gap_of_an_uncertain_table_is_in_units_of_its_floor(
+    tmp_path: Path,
+) -> None:
+    """Records count as few numbers in fits, which hid any gap that was held out."""
+    path, nominal = write_campaign(tmp_path, Hidden())
+    campaign = read_hit_campaign(path, *read_nominal(nominal))
+    response = campaign.hits.response.copy()
+    response[:, 1] *= 1.5
+    campaign = replace(
+        campaign,
+        hits=replace(campaign.hits, response=response),
+        nominal=replace(campaign.nominal, table_sd=(0.005, 0.02)),
+    )
+    found = diagnose_structure(campaign).found
+    assert [e.name for e in found.effects] == ["gain_error"]
+    assert found.gap_before.value > 1.0
+    assert found.gap_after.value < 0.1 * found.gap_before.value
 
 
 def based(bench: StructureBench) -> tuple[StructureBench, Fit]:
