@@ -165,7 +165,8 @@ def settled(
             break
     if near and not bench.nonlinear(candidates):
         return bench, fit
-    return bench, fitted_finely(bench, fit, candidates, STRUCTURE.fine_iterations)
+    steps = STRUCTURE.fine_iterations
+    return bench, fitted_finely(bench, fit.x, candidates, steps, fit.jacobian)
 
 
 def _met(
@@ -188,30 +189,25 @@ def _met(
 
 def fitted_finely(
     bench: StructureBench,
-    start: FloatArray | Fit,
+    start: FloatArray,
     candidates: Sequence[Candidate],
     steps: int,
+    known: FloatArray | None = None,
 ) -> Fit:
     """Fit whole records with the time integration that is judged.
 
     Args:
         bench: all records.
-        start: coordinates; or a fit with laws whose slopes are kept until a step fails.
+        start: coordinates.
         candidates: effects.
         steps: most steps, if a law is integrated at all.
+        known: slopes there, which laws keep until a step fails; see `descend`.
     """
     problem = make_problem(bench, candidates)
     if not bench.nonlinear(candidates):
-        x = start.x if isinstance(start, Fit) else start
-        return minimise(problem, x, FULL, iterations=0)
-    return minimise(
-        problem,
-        start,
-        FINE,
-        iterations=steps,
-        jacobian_resolution=FULL,
-        exact_slopes=False,
-    )
+        return minimise(problem, start, FULL, iterations=0)
+    how = Descent(FINE, iterations=steps, jacobian_resolution=FULL, exact_slopes=False)
+    return descend(problem, start, how, known)
 
 
 def _whole(
