@@ -32,6 +32,7 @@ from jointbench.analysis.gap.structure_response.port_laws import (
     PortLaws,
     weibull_sliders,
 )
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 def _slide(
@@ -79,9 +80,6 @@ def _law(
     )
 
 
-_MICRO_SHAPE = 2.1
-"""Shape above which a joint hardly yields before it slips as a whole: 2 % of the
-stiffness slips at a sixth of the slip displacement."""
 _WEIBULL = "Iwan 1966, J. Appl. Mech. 33, 893, with strengths of Weibull 1951"
 _SHARE = Parameter("share", "-", lower=0.0, upper=1.0, off=0.0)
 _PRELOAD = Parameter(
@@ -121,7 +119,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             (
                 _SHARE,
                 _slip(0.01, 100.0, 0.1, 0.5, 2.0),
-                _shape(0.3, _MICRO_SHAPE, 1.0),
+                _shape(0.3, STRUCTURE.micro_shape, 1.0),
                 _PRELOAD,
             ),
             _WEIBULL,
@@ -139,7 +137,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             (
                 _SHARE,
                 _slip(1e-3, 10.0, 0.03, 0.1, 0.3),
-                _shape(_MICRO_SHAPE, 30.0, 5.0),
+                _shape(STRUCTURE.micro_shape, 30.0, 5.0),
                 _PRELOAD,
                 _GRADUAL,
             ),

@@ -80,6 +80,13 @@ class StructureSettings:
         "least end of the cell of the weakest one",
         "a motion of 2 % slips little of a wide spread",
     )
+    micro_shape: float = numerical(
+        2.1,
+        "-",
+        "shape of the strengths of sliders below which friction is micro-slip, and "
+        "above which it is macro-slip",
+        "2 % of the stiffness slips at a sixth of the slip displacement",
+    )
     law_slope_step: float = numerical(
         1e-5,
         "-",
