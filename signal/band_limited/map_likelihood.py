@@ -42,9 +42,6 @@ _LARGEST_SKEW = 0.6
 """Largest e [-]: exponents along and across of a factor 4."""
 MOST_STEPS, _TRIALS = 40, 8
 """Most steps of a search, and most dampings of one [-]."""
-_FARTHEST = 1.5
-"""Largest step of ln roll-off [-]: beyond the map it has hardly any information, and a
-step from there leads to the other end of its range."""
 _SETTLED = 2e-3
 """Expected gain of the log-likelihood that ends a search [-]."""
 _NUDGE = 1e-3
@@ -369,7 +366,6 @@ class _ScoringSteps:
             curvature = self.curvature.copy()
             curvature.flat[:: self.size.size + 1] += damping + 1e-9
             step[self.moving] = np.linalg.solve(curvature, slope) / self.size
-            step[ROLL_OFF] = min(max(step[ROLL_OFF], -_FARTHEST), _FARTHEST)
         return step
 
 
