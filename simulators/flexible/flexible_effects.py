@@ -29,6 +29,10 @@ class FlexibleEffect:
     parameters: Mapping[str, float] = field(default_factory=dict)
 
 
+_APART = 0.01
+"""Spread of bolts across an axis below which they lie on it [m]."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class DrawScales:
     """What the sizes of effects refer to.
@@ -110,20 +114,16 @@ def _place(s: DrawScales, rng: np.random.Generator) -> dict[str, int | str]:
     return _point(s, rng) if rng.random() < 0.5 else _channel(s, rng)
 
 
-def _axis(_: DrawScales, rng: np.random.Generator) -> dict[str, int | str]:
-    return {"axis": str(rng.choice(("x", "y")))}
-
-
 def _lightest(s: DrawScales) -> float:
     return min(body.block.mass for body in s.specimen.bodies)
 
 
 def _rocking(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
     """Return a tilt of the joint as compliant as its bolts, to within a factor."""
-    where = _axis(s, rng)
+    where = _tilt_axis(s, rng)
     arm = rocking_arms(s.specimen, str(where["axis"]))
     bolts = float(np.sum(arm**2 * s.values.stiffness[:, 2]))
-    return _effect(where, compliance=_log(rng, 0.15, 1.0) / max(bolts, 1e-9))
+    return _effect(where, compliance=_log(rng, 0.15, 1.0) / bolts)
 
 
 def rocking_arms(specimen: BoltedSpecimen, axis: str) -> FloatArray:
@@ -133,16 +133,12 @@ def rocking_arms(specimen: BoltedSpecimen, axis: str) -> FloatArray:
     return np.asarray(bolts[:, column] - bolts[:, column].mean())
 
 
-def _rockable(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
-    """Return a rocking compliance about an axis that the bolts do not lie on."""
-    found = _rocking(s, rng)
-    arm = rocking_arms(s.specimen, str(found.where["axis"]))
-    if np.ptp(arm) < 0.01:
-        other = "y" if found.where["axis"] == "x" else "x"
-        arm = rocking_arms(s.specimen, other)
-        bolts = float(np.sum(arm**2 * s.values.stiffness[:, 2]))
-        return _effect({"axis": other}, compliance=_log(rng, 0.15, 1.0) / bolts)
-    return found
+def _tilt_axis(s: DrawScales, rng: np.random.Generator) -> dict[str, int | str]:
+    """Return an axis that the bolts do not lie on."""
+    drawn = str(rng.choice(("x", "y")))
+    if np.ptp(rocking_arms(s.specimen, drawn)) < _APART:
+        drawn = "y" if drawn == "x" else "x"
+    return {"axis": drawn}
 
 
 def _micro_slip(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
@@ -321,14 +317,14 @@ def _shifted(
 
 
 def _patch(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
-    return _effect(_axis(s, rng), slope=_sign(rng) * float(rng.uniform(0.25, 0.6)))
+    return _effect(_tilt_axis(s, rng), slope=_sign(rng) * float(rng.uniform(0.25, 0.6)))
 
 
 _CATALOGUE: Mapping[str, Draw] = MappingProxyType(
     {
         "joint_compliance_normal": _at(lambda *_: {"bolt": "all"}),
         "joint_compliance_tangential": _at(lambda *_: {"bolt": "all"}),
-        "joint_compliance_rocking": _rockable,
+        "joint_compliance_rocking": _rocking,
         "loose_bolt": _factor(0.03, 0.4, "factor", _at(_bolt)),
         "microslip": _micro_slip,
         "macroslip": _macro_slip,

@@ -32,6 +32,7 @@ _EXPONENTS = {
 }
 _RATTLER_DAMPING, _RATTLER_FREQUENCY = 0.05, 4.0  # [-], [Hz]: it rests in its cavity
 _RATTLER_STIFFNESS = 400.0  # [Hz], as frequency of its mass on its stop
+_TINY = 1e-12  # [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +88,8 @@ def _changed(
             return replace(state, values=_scaled(values, factors, factors))
         case "contact_patch":
             arm = rocking_arms(specimen, str(where["axis"]))
-            factors = 1 + p["slope"] * arm / np.abs(arm).max()
+            # Bolts that lie on the axis of the slope do not notice it.
+            factors = 1 + p["slope"] * arm / max(np.abs(arm).max(), _TINY)
             return replace(state, values=_scaled(values, factors, factors))
         case "preload_stiffness":
             factor = condition.torque_ratio ** p["n"]

@@ -15,6 +15,7 @@ from jointbench.simulators.flexible.flexible_effects import (
     FLEXIBLE_EFFECTS,
     FLEXIBLE_OUTSIDE,
     FlexibleEffect,
+    rocking_arms,
 )
 from jointbench.simulators.flexible.flexible_margin import flexible_margin
 from jointbench.simulators.flexible.flexible_url import bench_of_flexible_url
@@ -146,3 +147,12 @@ def test_the_base_follows_part_of_a_loose_bolt() -> None:
     found = flexible_margin(replace(bench, effects=(effect,)), "loose_bolt")
     assert 10 < found.rho < 0.7 * found.alone
     assert found.margin == pytest.approx(found.rho**2)
+
+
+@pytest.mark.parametrize("name", ["contact_patch", "joint_compliance_rocking"])
+def test_a_joint_tilts_about_an_axis_that_its_bolts_do_not_lie_on(name: str) -> None:
+    """The bolts of a lap joint are in one line, along which nothing would move."""
+    for seed in range(12, 18):
+        bench = draw_bench(seed, kind="lap-beam", effects=(name,))
+        arms = rocking_arms(bench.specimen, str(bench.effects[0].where["axis"]))
+        assert np.ptp(arms) > 0.01
