@@ -47,6 +47,7 @@ _TIME = "time"
 _RATE_AGREES = 1e-3
 """Relative difference of a stated and a measured rate that is rounding."""
 _TABLE = 2
+_LEAST_COLUMNS = 2  # an excitation and a response, or an excitation and its times
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,14 +116,17 @@ def what_arrays_hold(path: Path, arrays: Arrays) -> str:
     held = [f"{shown(n)} {a.shape}" for n, a in list(arrays.items())[:12]]
     names = [n for n, a in arrays.items() if a.size > 1 and a.dtype.kind in "fiu"]
     names.sort(key=lambda name: (not _ascends(arrays[name]), name[:1].lower() != "f"))
-    roles = (_TIME, "force", *["acceleration"] * 4)
+    timed = any(_ascends(arrays[name]) for name in names[:1])
+    roles = (*[_TIME] * timed, "force", *["acceleration"] * 4)
     units = {_TIME: "s", "force": "N", "acceleration": "m/s^2"}
     pairs = list(zip(roles, names, strict=False))
     example = ",".join(f"{role}.{name}:{units[role]}" for role, name in pairs)
+    if len(pairs) < _LEAST_COLUMNS:
+        example, timed = ARRAYS_EXAMPLE, True
+    rate = "" if timed else " --rate '10 kHz'"
     return (
         f"{named(path)} holds the variables {', '.join(held) or 'none'} and no units; "
-        f"describe them, for example --columns "
-        f"'{example if len(pairs) > 1 else ARRAYS_EXAMPLE}'"
+        f"describe them, for example --columns '{example}'{rate}"
     )
 
 

@@ -173,6 +173,14 @@ def test_a_table_without_times_needs_the_rate(tmp_path: Path) -> None:
     assert found.sample_rate == RATE
 
 
+def test_arrays_without_times_need_the_rate_in_the_proposal(tmp_path: Path) -> None:
+    """No array ascends as times do: none is proposed as one."""
+    np.savez(tmp_path / "h.npz", a=HITS[:, 1], force=HITS[:, 0])
+    words = r"'force\.force:N,acceleration\.a:m/s\^2' --rate '10 kHz'"
+    with pytest.raises(UnitError, match=words):
+        read_samples(tmp_path / "h.npz", SampleOptions())
+
+
 def history(values: FloatArray, unit: str, label: str) -> dict[str, Any]:
     """Return a struct as Testlab exports a time history."""
     quantity = {"label": unit, "unit_transformation": {"factor": 1.0}}
