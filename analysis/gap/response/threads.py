@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
 
-from threadpoolctl import threadpool_limits
+from jointbench.acquisition.basics.one_thread import one_thread
 
 _POOL: ContextVar[ThreadPoolExecutor | None] = ContextVar("pool", default=None)
 
@@ -28,7 +28,7 @@ def side_by_side(workers: int | None = None) -> Iterator[None]:
         workers: number of threads; the number of cores if None.
     """
     count = workers or os.cpu_count() or 1
-    with threadpool_limits(limits=1):
+    with one_thread():
         if count == 1:
             yield
             return
