@@ -99,7 +99,7 @@ def integrated(
         column: of the force in modes, shape (n_modes,).
     """
     n = bodies.omega.size
-    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body] * state.tuning
+    omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
     mass, ground = np.diag(state.mass[bodies.body]), np.zeros((n, n))
     for one in state.attached:
         place = one.rows(bodies)

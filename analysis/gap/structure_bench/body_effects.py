@@ -41,7 +41,7 @@ def _thicken_body(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
     bodies = campaign.bodies.thickness[site.name](1.0 + float(values[0]))
-    return replace(state, bodies=bodies, tuning=np.ones(bodies.omega.size))
+    return replace(state, bodies=bodies, tuned=None)
 
 
 def _hold_foot(

@@ -13,13 +13,18 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
     structure_candidates,
     without_effects,
 )
-from jointbench.analysis.gap.structure_response.base_layout import base_layout
+from jointbench.analysis.gap.structure_response.base_layout import (
+    BaseLayout,
+    base_layout,
+)
 from jointbench.analysis.gap.structure_response.hit_campaign import (
     HitCampaign,
     record_blocks,
 )
+from jointbench.analysis.gap.structure_response.joint_state import state_of
 from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.table_errors import tuned_modes
 
 
 def make_structure_bench(
@@ -45,7 +50,7 @@ def make_structure_bench(
     peak = np.abs(hits.response).max(axis=2)
     return StructureBench(
         campaign=campaign,
-        layout=base_layout(campaign.bodies, campaign.nominal, hits.band),
+        layout=_layout(campaign),
         entries=entries,
         candidates=structure_candidates(entries, campaign),
         floor=STRUCTURE.coarse_floor,
@@ -58,6 +63,14 @@ def make_structure_bench(
         kept={},
         policy=policy,
     )
+
+
+def _layout(campaign: HitCampaign) -> BaseLayout:
+    """Return the base coordinates, with frequencies where the table is uncertain."""
+    bodies, nominal = campaign.bodies, campaign.nominal
+    bare = base_layout(bodies, nominal)
+    state = state_of(bodies, nominal, bare, np.zeros(bare.sd.size))
+    return base_layout(bodies, nominal, tuned_modes(campaign, state))
 
 
 def _scales(campaign: HitCampaign) -> dict[str, float]:

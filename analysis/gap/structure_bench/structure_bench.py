@@ -25,6 +25,10 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_state,
 )
+from jointbench.analysis.gap.structure_bench.table_whitening import (
+    TableWhitening,
+    point_whitening,
+)
 from jointbench.analysis.gap.structure_bench.whitening import (
     HitWhitening,
     HumWhitening,
@@ -52,6 +56,12 @@ from jointbench.analysis.gap.structure_response.landing import (
     landing_weights,
     mean_landing,
 )
+from jointbench.analysis.gap.structure_response.residue_errors import (
+    ResidueErrors,
+    residue_errors,
+    separable,
+    typical_peaks,
+)
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -76,6 +86,8 @@ class StructureBench:
         scales: words to values.
         kept: closures, transforms and whitenings that are used again.
         policy: thresholds for fits of the bench.
+        errors: of responses by those of an uncertain modal table; None if it is exact,
+            and before they are computed.
     """
 
     campaign: HitCampaign
@@ -91,6 +103,7 @@ class StructureBench:
     scales: dict[str, float]
     kept: dict[Any, Any]
     policy: Policy = STANDARD
+    errors: ResidueErrors | None = None
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -114,7 +127,10 @@ class StructureBench:
 
     @property
     def table_floor(self) -> float:
-        """Error of the modal table as a share of the peak [-]."""
+        """Error of the model that its bases do not follow, as a share of the peak [-].
+
+        Of an uncertain modal table, errors of second order are left.
+        """
         stated = STRUCTURE.shape_floor * self.campaign.nominal.table_sd[1]
         return max(STRUCTURE.table_floor, stated)
 
@@ -126,13 +142,18 @@ class StructureBench:
         one amplitude and one phase of each mode: neither more hits nor more samples
         average it out. Fits give a record the weight of as many numbers.
         """
-        if self.campaign.nominal.table_sd[1] == 0.0:
+        tuned = self.layout.tuned
+        if tuned is None or not self.uncertain:
             return 1.0
         points = np.unique(self.campaign.hits.point).size
         records, _, count = self.campaign.hits.response.shape
-        near = self.campaign.bodies.modes_near(self.campaign.hits.band)
-        modes = max(len(near), 1)
+        modes = max(tuned.omega.size, 1)
         return float(records / points * max(count / (2 * modes), 1.0))
+
+    @property
+    def uncertain(self) -> bool:
+        """Whether the shapes of the modal table are uncertain."""
+        return self.campaign.nominal.table_sd[1] > 0.0
 
     @property
     def expanded(self) -> bool:
@@ -306,9 +327,14 @@ class StructureBench:
         model = moved.model(base, terms, window)
         rows = direction_rows(model, landing, self.direction_sd)
         peak = np.abs(self.campaign.hits.response).max(axis=2)
-        known = np.hypot(self.campaign.hits.noise, floor * peak)
-        sigma = known * np.sqrt(self.coherence)
-        return replace(moved, floor=floor, sigma=sigma, directions=rows)
+        if self.uncertain:
+            peak = typical_peaks(self.campaign, peak)
+        sigma = np.hypot(self.campaign.hits.noise, floor * peak)
+        errors = None
+        if self.uncertain:
+            sigma = separable(self.campaign, sigma) * np.sqrt(self.coherence)
+            errors = residue_errors(self.campaign, model.state, model.frame)
+        return replace(moved, floor=floor, sigma=sigma, directions=rows, errors=errors)
 
     def landed(
         self, base: FloatArray, terms: Sequence[Term], window: float | None = None
@@ -326,9 +352,13 @@ class StructureBench:
         modelled = self.response(base, terms, window)
         count = modelled.shape[2]
         r = modelled - self.campaign.hits.response[:, :, :count] - self._expected(count)
-        scaled = self._scaled(count)
-        flat = self._steadied(r / self.sigma[:, :, None]).reshape(len(r), -1)
-        found = directions_found(scaled, flat) * self.direction_sd
+        scaled = self._steadied(r / self.sigma[:, :, None])
+        if self.uncertain:
+            found = self._table_whitening(count).found(scaled)
+        else:
+            rows = _flat(self._scaled(count))
+            found = directions_found(rows, scaled.reshape(len(r), -1))
+        found = found * self.direction_sd
         return found[:, :4], found[:, 4]
 
     @property
@@ -360,6 +390,7 @@ class StructureBench:
             landing=self.landing[records],
             sigma=self.sigma[records],
             directions=None if self.directions is None else self.directions[records],
+            errors=None if self.errors is None else self.errors.chosen(records),
             blocks=record_blocks(replace(self.campaign, hits=few)),
             kept={},
         )
@@ -399,29 +430,50 @@ class StructureBench:
         return found
 
     def _scaled(self, count: int) -> FloatArray:
-        """Return directions over sigma, shape (n_records, 5, n_rows)."""
+        """Return directions over sigma, (n_records, 5, n_channels, n_samples)."""
         if self.directions is None:
             raise ValueError("directions are computed by `at` first")
         rows = self.directions[..., :count] / self.sigma[:, None, :, None]
-        return self._steadied(rows).reshape(*rows.shape[:2], -1)
+        return self._steadied(rows)
 
     def _steadied(self, rows: FloatArray) -> FloatArray:
         """Whiten rows over sigma for what is left of the hum of channels, in place.
+
+        What is left of it is far below the errors of an uncertain modal table.
 
         Args:
             rows: shape (n_records, ..., n_channels, n_samples).
         """
         hits, count = self.campaign.hits, rows.shape[-1]
-        if not hits.hum_left.size:
+        if not hits.hum_left.size or self.uncertain:
             return rows
         found: HumWhitening = self._kept(
             ("hum_left", count),
-            lambda: hum_whitening(
-                hits.hum_left[:, :count],
-                hits.noise * np.sqrt(self.coherence) / self.sigma,
-            ),
+            lambda: hum_whitening(hits.hum_left[:, :count], hits.noise / self.sigma),
         )
         return found(rows)
+
+    def _table_whitening(self, count: int) -> TableWhitening:
+        """Return the whitening for errors of the modal table and directions of hits."""
+        found: TableWhitening = self._kept(
+            ("table", count), lambda: self._made_table_whitening(count)
+        )
+        return found
+
+    def _made_table_whitening(self, count: int) -> TableWhitening:
+        hits, errors = self.campaign.hits, self.errors
+        if errors is None:
+            raise ValueError("errors of the table are computed by `at` first")
+        scaled = self._scaled(count)
+        groups = hits.of_points
+        points = []
+        for own in groups:
+            of_record = self.sigma[own].mean(axis=1)
+            of_channel = self.sigma[own[0]] / of_record[0]
+            unit = errors.rows[own, :, :count] / of_record[:, None, None]
+            sd = errors.sd[hits.point[own[0]]] / of_channel[:, None]
+            points.append(point_whitening(scaled[own], unit, sd))
+        return TableWhitening(groups, tuple(points))
 
     def _expected(self, count: int) -> FloatArray:
         """Return the response of the expansion that its prior mean removes."""
@@ -442,10 +494,17 @@ class StructureBench:
         """Return the whitening of records of so many samples, in place."""
         if self.directions is None:
             return _unchanged
+        if self.uncertain:
+            return self._table_whitening(count)
         found: HitWhitening = self._kept(
-            ("white", count), lambda: whitening_of(self._scaled(count))
+            ("white", count), lambda: whitening_of(_flat(self._scaled(count)))
         )
         return found
+
+
+def _flat(rows: FloatArray) -> FloatArray:
+    """Return rows of records, (n_records, n, ...) to (n_records, n, n_rows)."""
+    return rows.reshape(*rows.shape[:2], -1)
 
 
 def _unchanged(rows: FloatArray) -> FloatArray:

@@ -24,6 +24,30 @@ class BaseName(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class TunedModes:
+    """Closed modes whose frequencies an uncertain modal table leaves open.
+
+    Attributes:
+        rows: modal force on the free modes by each, shape (n_tuned, n_modes).
+        omega: nominal natural angular frequencies [rad/s], shape (n_tuned,).
+        sd: of the logarithms of their frequencies [-], shape (n_tuned,).
+    """
+
+    rows: FloatArray
+    omega: FloatArray
+    sd: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "rows", "omega", "sd")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of their coordinates."""
+        return tuple(tuned_name(k + 1) for k in range(self.omega.size))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class BaseLayout:
     """Order of the base coordinates; each is the log of a value over its nominal one.
 
@@ -34,7 +58,8 @@ class BaseLayout:
         compliant: directions with a stiffness coordinate, in its order.
         contrasts: log factors of the bolts over the bolt coordinates,
             shape (n_bolts, n_bolts - 1).
-        tuned: free modes whose frequency has a coordinate, with its name.
+        tuned: closed modes whose frequency has a coordinate; None if the modal table
+            is exact.
     """
 
     names: tuple[str, ...]
@@ -42,7 +67,7 @@ class BaseLayout:
     units: tuple[str, ...]
     compliant: tuple[int, ...]
     contrasts: FloatArray
-    tuned: tuple[tuple[int, str], ...] = ()
+    tuned: TunedModes | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -78,23 +103,26 @@ def bolt_name(number: int) -> str:
     return f"bolt contrast {number}"
 
 
+def tuned_name(number: int) -> str:
+    """Return the name of the frequency coordinate of a closed mode."""
+    return f"frequency of mode {number}"
+
+
 def base_layout(
-    bodies: JointedBodies, nominal: NominalBench, band: float = 0.0
+    bodies: JointedBodies, nominal: NominalBench, tuned: TunedModes | None = None
 ) -> BaseLayout:
     """Return the base coordinates with their priors.
 
     The scatter from bolt to bolt enters as contrasts, orthogonal to the mean: a factor
-    common to all bolts is a scale of their stiffness and damping. Where the modal table
-    is uncertain, the frequency of every free mode near the band is a coordinate. The
+    common to all bolts is a scale of their stiffness and damping. The
     mass of a body scales the squares of its shapes: the modal table knows them to the
     sd of the shapes, however well the body was weighed.
 
     Args:
         bodies: modes and rows.
         nominal: nominal parameters.
-        band: highest frequency with force [Hz].
+        tuned: closed modes whose frequency is a coordinate.
     """
-    tuned = bodies.modes_near(band) if nominal.table_sd[0] > 0.0 else ()
     count = bodies.bolts.shape[0]
     compliant = tuple(d for d in range(3) if not bodies.rigid[d])
     common = float(np.hypot(nominal.stiffness_sd, nominal.bolt_sd / np.sqrt(count)))
@@ -108,7 +136,9 @@ def base_layout(
     rows.append((BaseName.NORMAL_DAMPING, nominal.damping_sd, "N s/m"))
     rows.append((BaseName.FOOT, nominal.foot_sd[0], "N/m"))
     rows.append((BaseName.FOOT_DAMPING, nominal.foot_sd[1], "N s/m"))
-    rows += [(name, nominal.table_sd[0], "-") for _, name in tuned]
+    if tuned is not None:
+        sds = tuned.sd.tolist()
+        rows += [(n, sd, "-") for n, sd in zip(tuned.names, sds, strict=True)]
     rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
     names, sd, units = zip(*rows, strict=True)
     return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count), tuned)

@@ -45,10 +45,8 @@ def closed_modes(
     """
     if state.rocking is not None:
         raise ValueError("a rocking compliance is not integrated in time")
-    m, c, k = _matrices(bodies, state, torque)
-    held = [d for d in range(3) if state.compliance[d] == 0.0]
-    rows = bodies.bolt_rows[np.isin(bodies.row_directions, held)]
-    free = _null_space(rows)
+    m, c, k = mass_damping_stiffness(bodies, state, torque)
+    free = free_motions(bodies, state)
     m, c, k = (free.T @ x @ free for x in (m, c, k))
     n = len(m)
     inverse = np.linalg.inv(m)
@@ -62,10 +60,47 @@ def closed_modes(
     return ClosedModes(poles[kept], left[kept], (free @ vectors[:n])[:, kept] * twice)
 
 
-def _matrices(
+@dataclass(frozen=True, slots=True, eq=False)
+class RealModes:
+    """Undamped modes of the closed structure.
+
+    Attributes:
+        omega: natural angular frequencies [rad/s], shape (n,).
+        damping: ratios [-], shape (n,).
+        shapes: in the free modes, of unit modal mass, shape (n_modes, n).
+    """
+
+    omega: FloatArray
+    damping: FloatArray
+    shapes: FloatArray
+
+
+def real_modes(bodies: JointedBodies, state: JointState) -> RealModes:
+    """Return the undamped modes of bodies closed by their joints.
+
+    Args:
+        bodies: modes and rows.
+        state: of the model.
+    """
+    m, c, k = mass_damping_stiffness(bodies, state, 1.0)
+    free = free_motions(bodies, state)
+    m, c, k = (free.T @ x @ free for x in (m, c, k))
+    square, vectors = scipy.linalg.eigh(k, m)
+    omega = np.sqrt(np.maximum(square, STRUCTURE.least_direction))
+    damping = np.sum(vectors * (c @ vectors), axis=0) / (2.0 * omega)
+    return RealModes(omega, damping, free @ vectors)
+
+
+def mass_damping_stiffness(
     bodies: JointedBodies, state: JointState, torque: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return mass, damping and stiffness of the free modes with elastic joints."""
+    """Return mass, damping and stiffness of the free modes with elastic joints.
+
+    Args:
+        bodies: modes and rows.
+        state: of the model.
+        torque: factor of the torque on stiffness and damping of the bolts [-].
+    """
     omega = state.omega(bodies)
     mass = state.mass[bodies.body]
     m = np.diag(mass)
@@ -81,6 +116,8 @@ def _matrices(
     feet = bodies.feet.reshape(-1, omega.size)
     k += (state.foot[0] * np.repeat(state.foot_factor, 3) * feet.T) @ feet
     c += state.foot[1] * feet.T @ feet
+    if state.tuned is not None:
+        k += (state.tuned.stiffness * state.tuned.rows.T) @ state.tuned.rows
     for one in state.attached:
         # An oscillator above the band is a mass; below it, its spring holds the place.
         rows = one.rows(bodies)
@@ -89,8 +126,10 @@ def _matrices(
     return m, c, k
 
 
-def _null_space(rows: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of the motions without any of the rows."""
+def free_motions(bodies: JointedBodies, state: JointState) -> FloatArray:
+    """Return an orthonormal basis of the motions that rigid directions allow."""
+    held = [d for d in range(3) if state.compliance[d] == 0.0]
+    rows = bodies.bolt_rows[np.isin(bodies.row_directions, held)]
     if not len(rows):
         return np.eye(rows.shape[1])
     return np.asarray(scipy.linalg.null_space(rows, rcond=STRUCTURE.constraint_rank))

@@ -157,8 +157,8 @@ def close(
     left = _solved(system, _sums_over_modes(joints, rows, d))
     response = _sums_over_modes(rows, columns, d)
     response -= left.transpose(0, 2, 1) @ across
-    if state.attached:
-        _, force = _attached_forces(bodies, state, s, response)
+    if _added_rows(bodies, state):
+        _, force = _added_forces(bodies, state, s, response)
         count = force.shape[1]
         response = response[:, :-count, :-count] - response[:, :-count, -count:] @ force
     return Closure(s, torque, response, left, system, across, columns)
@@ -167,8 +167,8 @@ def close(
 def _ends(
     bodies: JointedBodies, state: JointState, columns: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return rows and columns, with those of attached things at their ends."""
-    places = [a.rows(bodies) for a in state.attached]
+    """Return rows and columns, with those of what is added at their ends."""
+    places = _added_rows(bodies, state)
     sensors = state.sensors_of(bodies)
     return (
         np.concatenate([sensors, *places]),
@@ -176,22 +176,39 @@ def _ends(
     )
 
 
-def _attached_forces(
+def _added_rows(bodies: JointedBodies, state: JointState) -> list[FloatArray]:
+    """Return the rows of attached things and of tuned modes, (n, n_modes) each."""
+    tuned = () if state.tuned is None else (state.tuned.rows,)
+    return [*(a.rows(bodies) for a in state.attached), *tuned]
+
+
+def _added_stiffness(
+    bodies: JointedBodies, state: JointState, s: ComplexArray
+) -> ComplexArray:
+    """Return the dynamic stiffness of each of these rows, shape (n_lines, n)."""
+    found = [
+        np.repeat(dynamic_stiffness(a, s)[:, None], len(a.rows(bodies)), axis=1)
+        for a in state.attached
+    ]
+    if state.tuned is not None:
+        found.append(np.tile(state.tuned.stiffness, (len(s), 1)))
+    return np.concatenate(found, axis=1)
+
+
+def _added_forces(
     bodies: JointedBodies, state: JointState, s: ComplexArray, h: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the forces of attached masses and oscillators per row and per column.
+    """Return the forces of what is added to the bodies per row and per column.
 
     H' = H - H_P (I + Z H_PP)^-1 Z H_P'; their rows and columns are the last ones.
 
     Args:
         bodies: places and rows.
-        state: with the attached things.
+        state: with what is added.
         s: Laplace variable, shape (n_lines,).
         h: response without them, shape (n_lines, n_rows, n_columns).
     """
-    counts = [len(a.rows(bodies)) for a in state.attached]
-    stiffness = [dynamic_stiffness(a, s) for a in state.attached]
-    z = np.repeat(np.stack(stiffness, axis=1), counts, axis=1)[:, :, None]
+    z = _added_stiffness(bodies, state, s)[:, :, None]
     count = z.shape[1]
     inner = np.eye(count) + z * h[:, -count:, -count:]
     by_row = _solved(inner, z * h[:, :-count, -count:].transpose(0, 2, 1))
@@ -212,11 +229,11 @@ def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> Clo
     right = _solved(found.system, found.across)
     in_rows = rows - left.transpose(0, 2, 1) @ joints
     in_columns = (columns - right.transpose(0, 2, 1) @ joints).transpose(0, 2, 1)
-    if not state.attached:
+    if not _added_rows(bodies, state):
         return ClosedRows(left, right, in_rows, in_columns)
     d = modal_receptances(bodies, state, found.s)
     bare = _sums_over_modes(rows, columns, d) - left.transpose(0, 2, 1) @ found.across
-    by_row, by_column = _attached_forces(bodies, state, found.s, bare)
+    by_row, by_column = _added_forces(bodies, state, found.s, bare)
     count = by_row.shape[1]
     return ClosedRows(
         left[:, :, :-count] - left[:, :, -count:] @ by_row,
@@ -261,6 +278,7 @@ def response_slopes(
     """
     ends = closed_rows(found, bodies, state)
     slopes = _modal_slopes(found, ends, bodies, state, layout)
+    slopes |= _tuned_slopes(found, ends, bodies, state, layout)
     left = ends.left.transpose(0, 2, 1)
 
     def across(joints: IntArray, change: ComplexArray) -> ComplexArray:
@@ -278,14 +296,13 @@ def _modal_slopes(
     state: JointState,
     layout: BaseLayout,
 ) -> dict[str, _Slope]:
-    """Return the slopes by modulus, mass, damping ratio and frequencies."""
+    """Return the slopes by modulus, mass and damping ratio of each body."""
     omega, s = state.omega(bodies), found.s[:, None]
     d = modal_receptances(bodies, state, found.s)
     square = -(d**2) * state.mass[bodies.body]
     loss = state.loss[bodies.body]
     by_loss = square * 2.0 * loss * omega * s
     by_modulus = square * (loss * omega * s + omega**2)
-    twice = 2.0 * by_modulus
 
     def across(change: ComplexArray, modes: slice) -> ComplexArray:
         rows = ends.rows[:, :, modes] * change[:, None, modes]
@@ -298,9 +315,31 @@ def _modal_slopes(
         slopes[modulus_name(name)] = partial(across, by_modulus, modes)
         slopes[loss_name(name)] = partial(across, by_loss, modes)
         slopes[mass_name(name)] = partial(across, -d, modes)
-    for mode, name in layout.tuned:
-        slopes[name] = partial(across, twice, slice(mode, mode + 1))
     return slopes
+
+
+def _tuned_slopes(
+    found: Closure,
+    ends: ClosedRows,
+    bodies: JointedBodies,
+    state: JointState,
+    layout: BaseLayout,
+) -> dict[str, _Slope]:
+    """Return the slopes by the frequencies of closed modes."""
+    if layout.tuned is None or state.tuned is None:
+        return {}
+    d = modal_receptances(bodies, state, found.s)
+    modes = state.tuned.rows
+    by_row = (ends.rows * d[:, None]) @ modes.T
+    by_column = (modes * d[:, None]) @ ends.columns
+
+    def across(k: int, slope: float) -> ComplexArray:
+        return np.asarray(-slope * by_row[:, :, [k]] * by_column[:, [k]])
+
+    return {
+        name: partial(across, k, float(state.tuned.slope[k]))
+        for k, name in enumerate(layout.tuned.names)
+    }
 
 
 _Change = tuple[IntArray, ComplexArray]

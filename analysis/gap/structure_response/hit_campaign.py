@@ -70,6 +70,11 @@ class HitRecords:
         freeze(self, "force", "response", "noise", "point", "torque", "level")
         freeze(self, "raw_force", "hum_left")
 
+    @property
+    def of_points(self) -> tuple[IntArray, ...]:
+        """Records of each point that was hit."""
+        return tuple(np.flatnonzero(self.point == one) for one in np.unique(self.point))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HitCampaign:

@@ -69,6 +69,22 @@ class CableResonance:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class TunedStiffness:
+    """Modal stiffness beyond that of the model, by which closed modes are tuned.
+
+    Attributes:
+        rows: modal force on the free modes by each, shape (n_tuned, n_modes).
+        stiffness: of each [rad^2/s^2], shape (n_tuned,).
+        slope: of the stiffness by the logarithm of the frequency [rad^2/s^2], shape
+            (n_tuned,).
+    """
+
+    rows: FloatArray
+    stiffness: FloatArray
+    slope: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class JointState:
     """Values of all parameters of the model.
 
@@ -89,8 +105,7 @@ class JointState:
             of the bodies.
         points: hammer points; None for those of the bodies.
         cables: resonances in the signals of channels.
-        tuning: factor on the natural frequency of each free mode [-], shape
-            (n_modes,).
+        tuned: closed modes at other frequencies than the model gives; None for none.
         attached: masses and oscillators.
         gain: relative gain of each channel less 1 [-], shape (n_channels,).
         lag: of each channel [s], shape (n_channels,).
@@ -108,7 +123,6 @@ class JointState:
     gain: FloatArray
     lag: FloatArray
     foot_factor: FloatArray
-    tuning: FloatArray
     exponent: float = 0.0
     damping_exponent: float = 0.0
     rocking: FloatArray | None = None
@@ -118,16 +132,17 @@ class JointState:
     attached: tuple[Attached, ...] = ()
     laws: tuple[PortLaws, ...] = ()
     bodies: JointedBodies | None = None
+    tuned: TunedStiffness | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "modulus", "mass", "loss", "compliance", "damping", "bolt")
-        freeze(self, "gain", "lag", "foot_factor", "tuning")
+        freeze(self, "gain", "lag", "foot_factor")
 
     def omega(self, bodies: JointedBodies) -> FloatArray:
         """Return the natural angular frequencies of the free modes [rad/s]."""
         root = np.sqrt(self.modulus)[bodies.body]
-        return np.asarray(bodies.omega * root * self.tuning)
+        return np.asarray(bodies.omega * root)
 
     def bodies_of(self, bodies: JointedBodies) -> JointedBodies:
         """Return the bodies as they are in this state."""
@@ -164,9 +179,12 @@ def state_of(
     along = factor[BaseName.NORMAL_DAMPING]
     foot = factor[BaseName.FOOT], factor[BaseName.FOOT_DAMPING]
     channels = len(bodies.channels)
-    tuning = np.ones(bodies.omega.size)
-    for mode, name in layout.tuned:
-        tuning[mode] = factor[name]
+    tuned = None
+    if layout.tuned is not None:
+        square = np.array([factor[name] for name in layout.tuned.names]) ** 2
+        own = layout.tuned.omega**2
+        slope = 2.0 * own * square
+        tuned = TunedStiffness(layout.tuned.rows, own * (square - 1.0), slope)
     contrast = base[layout.sd.size - layout.contrasts.shape[1] :]
     return JointState(
         modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
@@ -179,7 +197,7 @@ def state_of(
         gain=np.zeros(channels),
         lag=np.zeros(channels),
         foot_factor=np.ones(len(bodies.feet)),
-        tuning=tuning,
+        tuned=tuned,
     )
 
 

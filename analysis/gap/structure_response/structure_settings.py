@@ -115,10 +115,10 @@ class StructureSettings:
         "exact tables: above what is left of second-order aim, which is 0.03 %",
     )
     shape_floor: float = numerical(
-        1.0,
+        0.1,
         "of the sd",
         "floor as a multiple of the stated sd of the shapes of the modal table",
-        "a response is a sum of products of shapes, each wrong by as much",
+        "of the errors of a table those of first order are whitened",
     )
     tuned_band: float = numerical(
         1.3,
@@ -126,6 +126,13 @@ class StructureSettings:
         "free modes up to there have a frequency of their own where the modal table is "
         "uncertain",
         "modes above act by their static part, which hardly changes",
+    )
+    open_frequency: float = numerical(
+        1e-3,
+        "-",
+        "sd of the logarithm of a closed frequency from which it tells how large the "
+        "errors of a table are",
+        "modes of rigid bodies on their joints have a hundredth of it",
     )
     rigid_share: float = numerical(
         1e-3, "of the band", "frequency below which a free mode is a rigid motion"
@@ -272,6 +279,14 @@ class StructureSettings:
         "effects take 0.04 and less of complete benches with exact tables (seeds "
         "481101 to 481104), a hidden one took 0.86 (492514)",
     )
+    uncertain_drop: float = numerical(
+        25.0,
+        "chi2",
+        "drop of the cost of an accepted base from which one effect is named where the "
+        "modal table is uncertain",
+        "complete models had drops of up to 9 (seeds 503103, 503200, 503207); chance "
+        "reaches 17 in 0.5 % of cases",
+    )
     whole_cost_ratio: float = numerical(
         3.0,
         "of the best cost",
@@ -294,6 +309,12 @@ class StructureSettings:
         "-",
         "squared length below which a direction of a hit reaches no row",
         "far below the rounding of a direction",
+    )
+    least_variance: float = numerical(
+        1e-4,
+        "of the noise",
+        "variance of a direction below which whitening leaves it",
+        "it changes a residual by 5e-5 of its part along the direction",
     )
     surface_radius: float = numerical(
         0.065,

@@ -246,12 +246,13 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
     allowed = policy.floor_chi2
     if fit.candidates:
         allowed += policy.floor_chi2_share * max(base.chi2 / dof - 1.0, 0.0)
-    deviation = float(np.abs(fit.prior_deviations).max())
+    deviations = _deviations(bench, fit)
+    deviation = float(deviations.max())
     reason = ""
     if chi2 > allowed:
         reason = f"chi2/dof is {chi2:.4g}, the limit is {allowed:.4g}"
     elif deviation > policy.floor_prior_limit:
-        worst = bench.base_names[int(np.argmax(np.abs(fit.prior_deviations)))]
+        worst = bench.base_names[int(np.argmax(deviations))]
         reason = f"{worst} is {deviation:.1f} sd from its nominal value"
     else:
         landing, _ = bench.landed(fit.base, fit.terms)
@@ -267,3 +268,19 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         unexplained=bool(reason),
         left=None,
     )
+
+
+def _deviations(bench: StructureBench, fit: Fit) -> FloatArray:
+    """Return the deviations of the base from its nominal values [sd], as judged.
+
+    The sd of the frequencies of a table is a guess of one size for all of them, which
+    their own deviations correct where they are larger.
+    """
+    found = np.abs(fit.prior_deviations)
+    if bench.layout.tuned is not None:
+        own = [bench.layout.at(name) for name in bench.layout.tuned.names]
+        open_ones = [k for k in own if bench.base_sd[k] > STRUCTURE.open_frequency]
+        if open_ones:
+            size = float(np.sqrt(np.mean(found[open_ones] ** 2)))
+            found[own] /= max(size, 1.0)
+    return np.asarray(found)

@@ -98,14 +98,17 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     singles = carried(few, near, screening, progress)
     done = in_whole_records(bench, few, base, singles, progress)
     if first.passed:
-        done = [one for one in done if one.acceptance.passed and takes(one.fit, base)]
+        done = [
+            one
+            for one in done
+            if one.acceptance.passed and takes(one.bench, one.fit, base)
+        ]
     if not done:
         return _complete(whole, _with_slopes(whole, base), first, screening)
     if found := needless(done[0], screening):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
-    exact = bench.campaign.nominal.table_sd[1] == 0.0
-    if exact and not done[0].acceptance.passed:
+    if not bench.uncertain and not done[0].acceptance.passed:
         pairs = _with_a_second(few, singles, progress)
         two = in_whole_records(bench, few, base, pairs, progress)
         if two and (one := alone(bench, base, two[0])):
@@ -121,15 +124,13 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
 
     The limit of chi2 is wide, since it must hold for errors of the model. They resemble
     no effect, so one that takes a good share of them is worth a search. Marks are left
-    to the mean of where hits landed, and errors of an uncertain modal table resemble
-    effects.
+    to the mean of where hits landed. Errors of an uncertain modal table are weighed as
+    what they are, so what takes more than chance would is worth a search there.
 
     Args:
         whole: all records.
         base: fit without effects that is accepted.
     """
-    if whole.campaign.nominal.table_sd[1] > 0.0:
-        return False
     every = one_of_each(whole.campaign.hits)
     own = whole.chosen(every)
     own = whole.chosen(every[torques_in_turn(own.campaign.hits)])
@@ -140,12 +141,23 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
         for c in own.candidates
         if c.effect.name not in aimed and not own.nonlinear((c,))
     ]
+    if whole.uncertain:
+        found = screen(own, near, own.candidates, resolution=LONGER)
+        return found.largest > found.threshold
     found = screen(own, near, linear, resolution=LONGER)
     return found.largest > STRUCTURE.taken_share * near.chi2
 
 
-def takes(fit: Fit, base: Fit) -> bool:
-    """Return whether a fit takes a good share of what the base leaves."""
+def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
+    """Return whether a fit takes a good part of what the base leaves.
+
+    Args:
+        bench: of the fits.
+        fit: with effects.
+        base: fit without effects.
+    """
+    if bench.uncertain:
+        return base.cost - fit.cost > STRUCTURE.uncertain_drop
     return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
 
 
@@ -226,6 +238,8 @@ def needless(best: JudgedFit, screening: Screening) -> StructureOutcome | None:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
     judged = accept_structure(bench, base, base)
+    if bench.uncertain and takes(bench, best.fit, base):
+        return None
     nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
     if not (judged.passed or nothing):
         return None

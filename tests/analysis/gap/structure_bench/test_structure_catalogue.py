@@ -97,7 +97,8 @@ def test_errors_of_a_table_weigh_as_few_numbers(bench: StructureBench) -> None:
     nominal = replace(bench.campaign.nominal, table_sd=(0.005, 0.02))
     uncertain = make_structure_bench(replace(bench.campaign, nominal=nominal))
     records, _, count = bench.campaign.hits.response.shape
-    modes = len(uncertain.layout.tuned)
+    assert uncertain.layout.tuned is not None
+    modes = uncertain.layout.tuned.omega.size
     assert bench.coherence == 1.0
     assert uncertain.coherence == pytest.approx(records / 2 * count / (2 * modes))
     known = dict(zip(uncertain.base_names, uncertain.base_sd, strict=True))

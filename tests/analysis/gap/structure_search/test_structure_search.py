@@ -111,8 +111,8 @@ def test_one_effect_may_take_much_of_what_an_accepted_base_leaves(
     bench, base = based(make_structure_bench(replace(campaign, hits=hits)))
     assert accept_structure(bench, base, base).passed
     assert one_effect_takes_much(bench, base)
-    assert takes(replace(base, residual=0.8 * base.residual), base)
-    assert not takes(replace(base, residual=0.95 * base.residual), base)
+    assert takes(bench, replace(base, residual=0.8 * base.residual), base)
+    assert not takes(bench, replace(base, residual=0.95 * base.residual), base)
 
 
 def test_the_gap_of_an_uncertain_table_is_in_units_of_its_floor(

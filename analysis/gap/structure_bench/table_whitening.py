@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""Whitening of hits of one point where the modal table is uncertain.
+
+The errors of the table E are the same in all hits of a point, the directions W are each
+hit's own: the rows x of a point over sigma have the covariance A + W'W, A = I + E'E.
+With orthonormal rows Q that span E, the inverse root of A is I - Q'NQ for each channel,
+and that of the whole follows from the small matrix W A^-1 W'. Nothing is stored that is
+as large as all directions of all hits.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+
+_AT_ONCE = 8
+"""Columns that are whitened at once: more would copy a Jacobian."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointWhitening:
+    """Inverse root of the covariance of all records of a point.
+
+    Attributes:
+        directions: derivatives W by directions of unit sd, over sigma, shape
+            (n_records, n_directions, n_channels, n_samples).
+        basis: Q of the errors of the table, shape (n_records, n, n_samples).
+        taken: N of each channel, shape (n_channels, n, n).
+        within: directions in the basis, WQ', shape
+            (n_records, n_directions, n_channels, n).
+        inner: W A^-1 W', shape (n_all_directions, n_all_directions).
+    """
+
+    directions: FloatArray
+    basis: FloatArray
+    taken: FloatArray
+    within: FloatArray
+    inner: FloatArray
+
+    def found(self, rows: FloatArray) -> FloatArray:
+        """Return the most likely directions of rows, (n_records, n_directions).
+
+        Args:
+            rows: model minus measurement over sigma, shape
+                (n_records, n_channels, n_samples).
+        """
+        one = rows[:, None]
+        right = self._against(one, self._in_basis(one))[:, 0]
+        found = -np.linalg.solve(np.eye(len(right)) + self.inner, right)
+        return np.asarray(found.reshape(len(rows), -1))
+
+    def whiten(self, rows: FloatArray) -> None:
+        """Whiten rows over sigma in place, (n_records, n, n_channels, n_samples)."""
+        values, vectors = np.linalg.eigh(self.inner)
+        values = np.maximum(values, STRUCTURE.least_direction)
+        share = (1.0 - 1.0 / np.sqrt(1.0 + values)) / values
+        removed = (vectors * share) @ vectors.T
+        for first in range(0, rows.shape[1], _AT_ONCE):
+            part = rows[:, first : first + _AT_ONCE]
+            known = self._in_basis(part)
+            moved = removed @ self._against(part, known)
+            moved = moved.reshape(len(rows), -1, part.shape[1])
+            known -= np.einsum("rdca,rdn->nca", self.within, moved, optimize=True)
+            known = np.einsum("cab,ncb->nca", self.taken, known, optimize=True)
+            for r in range(len(rows)):
+                flat = self.directions[r].reshape(moved.shape[1], -1)
+                part[r] -= (moved[r].T @ flat).reshape(part[r].shape)
+                part[r] -= known @ self.basis[r]
+
+    def _in_basis(self, rows: FloatArray) -> FloatArray:
+        """Return Q times rows, shape (n, n_channels, n_basis)."""
+        _, count, channels, _ = rows.shape
+        found = np.zeros((count, channels, self.basis.shape[1]))
+        for row, basis in zip(rows, self.basis, strict=True):
+            found += row @ basis.T
+        return found
+
+    def _against(self, rows: FloatArray, known: FloatArray) -> FloatArray:
+        """Return W A^-1 times rows, shape (n_all_directions, n).
+
+        Args:
+            rows: over sigma, shape (n_records, n, n_channels, n_samples).
+            known: Q times them.
+        """
+        _, count, _, _ = rows.shape
+        found = np.stack(
+            [
+                d.reshape(len(d), -1) @ row.reshape(count, -1).T
+                for d, row in zip(self.directions, rows, strict=True)
+            ]
+        )
+        twice = _of_inverse(self.taken)
+        known = np.einsum("cab,ncb->nca", twice, known, optimize=True)
+        found -= np.einsum("rdca,nca->rdn", self.within, known, optimize=True)
+        return np.asarray(found.reshape(-1, count))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TableWhitening:
+    """Inverse root of the covariance of all records, by point.
+
+    Attributes:
+        records: of each point.
+        points: their whitenings.
+    """
+
+    records: tuple[IntArray, ...]
+    points: tuple[PointWhitening, ...]
+
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows of records, shape (n_records, n, n_rows), in place."""
+        for own, point in zip(self.records, self.points, strict=True):
+            _, _, *shape = point.directions.shape
+            block = rows[own].reshape(len(own), rows.shape[1], *shape)
+            point.whiten(block)
+            rows[own] = block.reshape(len(own), rows.shape[1], -1)
+        return rows
+
+    def found(self, rows: FloatArray) -> FloatArray:
+        """Return the most likely directions, shape (n_records, n_directions).
+
+        Args:
+            rows: model minus measurement over sigma, shape
+                (n_records, n_channels, n_samples).
+        """
+        found = np.empty((len(rows), self.points[0].directions.shape[1]))
+        for own, point in zip(self.records, self.points, strict=True):
+            found[own] = point.found(rows[own])
+        return found
+
+
+def point_whitening(
+    directions: FloatArray, errors: FloatArray, sd: FloatArray
+) -> PointWhitening:
+    """Return the whitening of the records of a point.
+
+    Args:
+        directions: derivatives by directions of unit sd, over sigma, shape
+            (n_records, n_directions, n_channels, n_samples).
+        errors: responses of unit error of the table, over the part of sigma that
+            depends on the record, shape (n_records, n_errors, n_samples).
+        sd: of these errors in each channel, over the other part, shape
+            (n_channels, n_errors).
+    """
+    largest = np.maximum(sd.max(axis=0), STRUCTURE.least_direction)
+    flat = (errors * largest[:, None]).transpose(1, 0, 2).reshape(largest.size, -1)
+    values, vectors = np.linalg.eigh(flat @ flat.T)
+    kept = values > STRUCTURE.least_variance
+    values, vectors = values[kept], vectors[:, kept]
+    root = np.sqrt(values)
+    basis = (vectors / root).T @ flat
+    taken = np.stack([_taken((one / largest)[:, None] * vectors * root) for one in sd])
+    records, count, _, length = directions.shape
+    basis = basis.reshape(len(root), records, length).transpose(1, 0, 2)
+    basis = np.ascontiguousarray(basis)
+    within = np.stack([d @ q.T for d, q in zip(directions, basis, strict=True)])
+    inner = -np.einsum(
+        "rdca,cab,secb->rdse",
+        within,
+        _of_inverse(taken),
+        within,
+        optimize=True,
+    )
+    for r, own in enumerate(directions):
+        flat = own.reshape(count, -1)
+        inner[r, :, r] += flat @ flat.T
+    inner = inner.reshape(records * count, -1)
+    return PointWhitening(directions, basis, taken, within, inner)
+
+
+def _taken(rows: FloatArray) -> FloatArray:
+    """Return N of the covariance I + R'R, so that its inverse root is I - N."""
+    values, vectors = np.linalg.eigh(rows.T @ rows)
+    share = 1.0 - 1.0 / np.sqrt(1.0 + np.maximum(values, 0.0))
+    return np.asarray((vectors * share) @ vectors.T)
+
+
+def _of_inverse(taken: FloatArray) -> FloatArray:
+    """Return what the inverse itself takes, where its root takes N: 2N - NN."""
+    return np.asarray(2.0 * taken - taken @ taken)

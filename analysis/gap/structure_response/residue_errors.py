@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""Errors of responses where the modal table of the bodies is uncertain.
+
+Errors of shapes and frequencies are errors of the stiffness of the free bodies, in
+their modes. To first order they change the frequency of each closed mode, its damping
+and its residue between a point and a channel. Frequencies are base coordinates (see
+`tuned_modes`); the rest are errors here, the same in all hits of a point: what differs
+between such hits, and a response that is no sum of the modes, is not due to the table.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.structure_response.closed_modes import (
+    RealModes,
+    real_modes,
+)
+from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.hit_frames import HitFrame
+from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.table_errors import mixing_of
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ResidueErrors:
+    """Errors of closed modes between points and channels.
+
+    Attributes:
+        rows: responses of unit error in each record, shape
+            (n_records, n_errors, n_samples).
+        sd: of these errors, shape (n_points, n_channels, n_errors).
+    """
+
+    rows: FloatArray
+    sd: FloatArray
+
+    def chosen(self, records: IntArray) -> "ResidueErrors":
+        """Return the errors of some records."""
+        return ResidueErrors(self.rows[records], self.sd)
+
+
+def residue_errors(
+    campaign: HitCampaign, state: JointState, frame: HitFrame
+) -> ResidueErrors:
+    """Return the errors of responses that errors of the modal table make.
+
+    In phase and in quadrature, each mode has the error of its residue; what the joints
+    give it of damping goes with the squares of the shapes. Modes above the band have
+    the error of their static part.
+
+    Args:
+        campaign: hits, modes and nominal parameters.
+        state: of the model.
+        frame: transforms of the window.
+    """
+    bodies = state.bodies_of(campaign.bodies)
+    modes = real_modes(bodies, state)
+    channels = state.sensors_of(bodies) @ modes.shapes
+    points = np.stack([p.direction @ p.rows for p in state.points_of(bodies)])
+    points = points @ modes.shapes
+    near = modes.omega < 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
+    shape_sd = campaign.nominal.table_sd[1]
+    mixing = mixing_of(campaign, bodies, modes)
+    residue = points[:, None] * channels
+    error = np.sqrt(
+        _mixed(channels, points, mixing)
+        + (shape_sd * _typical(channels[:, near]) * np.abs(points)[:, None]) ** 2
+        + (shape_sd * _typical(points[:, near])[:, None] * np.abs(channels)) ** 2
+    )
+    damped = 2.0 * shape_sd * modes.damping * np.abs(residue)
+    static = np.sqrt(np.sum((error / modes.omega**2)[..., ~near] ** 2, axis=-1))
+    sd = np.concatenate(
+        [error[..., near], error[..., near], damped[..., near], static[..., None]], -1
+    )
+    lines = _lines(modes, near, frame.s)
+    rows = np.stack([frame.records(lines * one) for one in frame.force])
+    return ResidueErrors(rows, sd)
+
+
+def typical_peaks(campaign: HitCampaign, peak: FloatArray) -> FloatArray:
+    """Return the peaks of records, those of channels across the motion raised.
+
+    Where a channel hardly moves, the errors of its response are those of a mode that
+    moves it as modes do on average.
+
+    Args:
+        campaign: hits and modes.
+        peak: of each record and channel [m/s^2], shape (n_records, n_channels).
+    """
+    bodies = campaign.bodies
+    elastic = bodies.omega > STRUCTURE.rigid_share * 2.0 * np.pi * campaign.hits.band
+    motion = np.sqrt(np.mean(bodies.sensors[:, elastic] ** 2, axis=1))
+    moving = np.maximum(motion, STRUCTURE.least_direction)
+    typical = np.sqrt(np.mean((peak / moving) ** 2, axis=1))[:, None] * moving
+    return np.asarray(np.maximum(peak, typical))
+
+
+def separable(campaign: HitCampaign, sigma: FloatArray) -> FloatArray:
+    """Return sd as products of one of the record and one of the channel, by point.
+
+    Args:
+        campaign: hits.
+        sigma: of each record and channel, shape (n_records, n_channels).
+    """
+    found = np.log(sigma)
+    for own in campaign.hits.of_points:
+        one = found[own]
+        of_channel = one.mean(axis=0) - one.mean()
+        found[own] = one.mean(axis=1)[:, None] + of_channel
+    return np.asarray(np.exp(found))
+
+
+def _mixed(channels: FloatArray, points: FloatArray, mixing: FloatArray) -> FloatArray:
+    """Return the variance of residues by mixed modes, (n_points, n_channels, n)."""
+    found = np.empty((len(points), len(channels), channels.shape[1]))
+    square = mixing**2
+    for p, point in enumerate(points):
+        for c, channel in enumerate(channels):
+            pairs = np.outer(point, channel)
+            found[p, c] = np.sum(square * (pairs + pairs.T) ** 2, axis=1)
+    return found
+
+
+def _typical(motion: FloatArray) -> FloatArray:
+    """Return the motion of a typical mode at each place, shape (n_places, 1)."""
+    return np.asarray(np.sqrt(np.mean(motion**2, axis=1)))[:, None]
+
+
+def _lines(modes: RealModes, near: IntArray, s: ComplexArray) -> ComplexArray:
+    """Return accelerations per force of unit errors, shape (n_errors, n_lines)."""
+    omega, damping = modes.omega[near, None], modes.damping[near, None]
+    one = s**2 / (s**2 + 2.0 * damping * omega * s + omega**2)
+    return np.concatenate(
+        [one, one * s / omega, one**2 * 2.0 * omega / s, (s**2)[None]]
+    )
