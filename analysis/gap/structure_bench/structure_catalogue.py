@@ -42,12 +42,12 @@ def _slide(
     gradual = float(values[4]) if values.size > 4 else 0.0
     ports = tangential_ports(campaign, state, site)
     slips, weights = weibull_sliders(slip, shape)
-    if values.size > 4:
+    # Without a gradual slider the integration ends where all sliders rest.
+    yields = gradual > 0.0
+    if yields:
         weights = np.append((1.0 - gradual) * weights, gradual)
         slips = np.append(slips, slip)
-    laws = PortLaws(
-        ports, share, slips, weights, preload=preload, gradual=int(values.size > 4)
-    )
+    laws = PortLaws(ports, share, slips, weights, preload=preload, gradual=int(yields))
     return replace(state, laws=(*state.laws, laws))
 
 

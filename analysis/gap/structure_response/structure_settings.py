@@ -41,7 +41,11 @@ class StructureSettings:
         "spring that makes 80 % of the response",
     )
     slider_corrections: int = numerical(
-        3, "-", "corrections of the forces of sliders in one step", "a prototype"
+        1,
+        "-",
+        "corrections of the forces of sliders in one step, from a guess that continues "
+        "a straight line",
+        "responses with 1 and 4 differ by less than 2e-5 of the peak",
     )
     law_corrections: int = numerical(
         6,

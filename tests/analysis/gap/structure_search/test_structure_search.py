@@ -19,6 +19,7 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.landing import mark_missed
+from jointbench.analysis.gap.structure_search.continued_laws import with_continued
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
@@ -200,6 +201,28 @@ def test_every_law_of_the_leading_family_is_fitted_to_whole_records(
     assert [fit.candidates for fit in worth] == [micro.candidates, macro.candidates]
     near = replace(bolt, cost=1.0)
     assert worth_it(found.bench, [near, macro, further]) == [near]
+
+
+def test_friction_continues_where_its_shape_ends(found: StructureOutcome) -> None:
+    """Micro-slip and macro-slip are one law: a fit at its end continues as the other."""
+    few = found.bench.chosen(one_of_each(found.bench.campaign.hits))
+    micro = candidate(found, "microslip")
+    macro = next(
+        c
+        for c in found.bench.candidates
+        if c.effect.name == "macroslip" and c.site == micro.site
+    )
+    end = macro.effect.parameters[2].bounds[0]
+    base = np.zeros(few.base_sd.size)
+    start = np.append(base, [0.3, -2.0, end, 0.5, 0.1])
+    bound = minimise(make_problem(few, (macro,)), start, SHORT, iterations=0)
+    (beyond,) = with_continued(few, [bound], SHORT, 2)
+    assert beyond.candidates == (micro,)
+    assert beyond.cost < bound.cost
+    inside = minimise(
+        make_problem(few, (macro,)), start + np.eye(start.size)[-3], SHORT, iterations=0
+    )
+    assert with_continued(few, [inside], SHORT, 2) == [inside]
 
 
 def test_one_pair_with_a_law_is_fitted_to_whole_records(
