@@ -84,12 +84,22 @@ class StructureSettings:
         "least end of the cell of the weakest one",
         "a motion of 2 % slips little of a wide spread",
     )
-    micro_shape: float = numerical(
-        2.1,
+    shapes: tuple[float, float] = numerical(
+        (0.06, 30.0),
         "-",
-        "shape of the strengths of sliders below which friction is micro-slip, and "
-        "above which it is macro-slip",
-        "2 % of the stiffness slips at a sixth of the slip displacement",
+        "least and largest shape of the strengths of sliders",
+        "wider than a joint: Coulomb's friction, and sliders without a mean strength",
+    )
+    least_tail: float = numerical(
+        1e-3, "-", "tail of the strengths below which they are those of Weibull"
+    )
+    micro_share: float = numerical(
+        0.165,
+        "of the stiffness",
+        "stiffness that slips below half of the slip displacement above which friction "
+        "is micro-slip, and below which it is macro-slip",
+        "0.145 of a Richard-Abbott law with n = 3, which slips as a whole, 0.184 "
+        "of Mindlin's contact, of which a ring slips at any motion",
     )
     law_slope_step: float = numerical(
         1e-5,
@@ -214,6 +224,12 @@ class StructureSettings:
         "fitted with the time integration that is judged",
         "30 units of chi2 of twelve hits: the steps that follow, on all hits, separate "
         "rivals",
+    )
+    weighed_sd: float = numerical(
+        0.01,
+        "-",
+        "sd of a base parameter below which friction may not move it far",
+        "masses are known to 0.1 to 0.5 %, all else to 2 % and more",
     )
     whole_iterations: int = numerical(
         8, "steps", "most steps of a fit to whole records in one round"

@@ -82,6 +82,18 @@ def in_whole_records(
     return done
 
 
+def leaves_much(best: JudgedFit) -> bool:
+    """Return whether a fit leaves enough for a second effect.
+
+    Of a law whose chi2 is within its limit, the base or a mark is refused, which no
+    second effect mends; each fit of a pair integrates the law again.
+    """
+    judged = best.acceptance
+    if best.bench.nonlinear(best.fit.candidates) and judged.excess <= judged.allowed:
+        return False
+    return not judged.passed
+
+
 def _met_in_windows(
     few: StructureBench, carried: Sequence[Fit], progress: Progress
 ) -> list[_Found]:
