@@ -35,7 +35,7 @@ def with_continued(
     """
     found = list(fits)
     for fit in fits:
-        start = _continued(few, fit)
+        start = continued(few, fit)
         if start is None:
             continue
         candidates, x = start
@@ -51,10 +51,18 @@ def with_continued(
     return found
 
 
-def _continued(
+def continued(
     few: StructureBench, fit: Fit
 ) -> tuple[tuple[Candidate, ...], FloatArray] | None:
-    """Return effects and start of the law beyond the bound at which a fit ended."""
+    """Return effects and start of the law beyond the bound at which a fit ended.
+
+    Args:
+        few: bench with the catalogue.
+        fit: of any effects.
+
+    Returns:
+        None if no law of the fit ended at such a bound.
+    """
     for k, term in enumerate(fit.terms):
         for other in few.candidates:
             if _beyond(term, other):
