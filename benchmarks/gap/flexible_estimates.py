@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.analysis.gap.structure_response.port_laws import weibull_sliders
+from jointbench.analysis.gap.structure_response.port_laws import spread_sliders
 from jointbench.simulators.flexible.friction_and_stops import (
     BoltLaw,
     PortLawKind,
@@ -115,7 +115,7 @@ def _loop(
     """Return the energy of a cycle of friction, or the force of another law."""
     if name in _REACH:
         amplitude = _REACH[name] * share * true["slip"]
-        if "shape" not in values:
+        if "early" not in values:
             return _true_cycle(values, amplitude)
         return values["share"] * _cycle(values, amplitude)
     if name == "clearance":
@@ -139,7 +139,8 @@ def _cycle(found: Mapping[str, float], amplitude: float) -> float:
     Of a gradual one, which unloads by F along its spring and then follows tanh over
     2 A - F, with F = tanh (2 A - F), it is 2 ln cosh (2 A - F) - F^2.
     """
-    slips, weights = weibull_sliders(found["slip"], found["shape"])
+    shape = found["early"], found["tail"]
+    slips, weights = spread_sliders(found["slip"], *shape)
     gradual = found.get("gradual", 0.0)
     sharp = 4.0 * float(weights @ (slips * np.maximum(amplitude - slips, 0.0)))
     way, force = 2.0 * amplitude / found["slip"], 0.0

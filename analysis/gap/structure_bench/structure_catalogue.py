@@ -30,7 +30,7 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_response.port_laws import (
     LawForm,
     PortLaws,
-    weibull_sliders,
+    spread_sliders,
 )
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
@@ -38,16 +38,16 @@ from jointbench.analysis.gap.structure_response.structure_settings import STRUCT
 def _slide(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
-    share, slip, shape, preload = (float(v) for v in values[:4])
-    gradual = float(values[4]) if values.size > 4 else 0.0
+    share, slip, early, preload, tail = (float(v) for v in values[:5])
+    gradual = float(values[5]) if values.size > 5 else 0.0
     ports = tangential_ports(campaign, state, site)
-    slips, weights = weibull_sliders(slip, shape)
-    if values.size > 4:
+    slips, weights = spread_sliders(slip, early, tail)
+    # Without a gradual slider the integration ends where all sliders rest.
+    yields = gradual > 0.0
+    if yields:
         weights = np.append((1.0 - gradual) * weights, gradual)
         slips = np.append(slips, slip)
-    laws = PortLaws(
-        ports, share, slips, weights, preload=preload, gradual=int(values.size > 4)
-    )
+    laws = PortLaws(ports, share, slips, weights, preload=preload, gradual=int(yields))
     return replace(state, laws=(*state.laws, laws))
 
 
@@ -85,6 +85,9 @@ _SHARE = Parameter("share", "-", lower=0.0, upper=1.0, off=0.0)
 _PRELOAD = Parameter(
     "torque_exponent", "-", lower=-0.5, upper=2.0, starts=(0.0, 1.0), prior=(0.5, 1.0)
 )
+_TAIL = Parameter(
+    "tail", "-", lower=-0.97, upper=0.5, starts=(-0.1,), prior=(-0.1, 0.5)
+)
 _GRADUAL = Parameter(
     "gradual", "-", lower=0.0, upper=1.0, starts=(0.2,), prior=(0.5, 0.5)
 )
@@ -98,11 +101,11 @@ def _slip(lower: float, upper: float, *starts: float) -> Parameter:
     )
 
 
-def _shape(lower: float, upper: float, start: float) -> Parameter:
-    """Return the shape of the distribution of strengths."""
-    log, prior = Transform.LOG, (start, 0.7)
+def _early(lower: float, upper: float, start: float, spread: float) -> Parameter:
+    """Return the share of the stiffness that slips below half the slip displacement."""
+    log, prior = Transform.LOG, (start, spread)
     return Parameter(
-        *("shape", "-"),
+        *("early", "-"),
         lower=lower,
         upper=upper,
         starts=(start,),
@@ -119,8 +122,9 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             (
                 _SHARE,
                 _slip(0.01, 100.0, 0.1, 0.5, 2.0),
-                _shape(0.3, STRUCTURE.micro_shape, 1.0),
+                _early(STRUCTURE.micro_share, 0.8, 0.37, 0.5),
                 _PRELOAD,
+                _TAIL,
             ),
             _WEIBULL,
             has_sliders=True,
@@ -137,8 +141,9 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             (
                 _SHARE,
                 _slip(1e-3, 10.0, 0.03, 0.1, 0.3),
-                _shape(STRUCTURE.micro_shape, 30.0, 5.0),
+                _early(1e-5, STRUCTURE.micro_share, 0.02, 1.5),
                 _PRELOAD,
+                _TAIL,
                 _GRADUAL,
             ),
             _WEIBULL,

@@ -257,8 +257,11 @@ def law_forces(
     step = hits.filter.step
     friction = all(law.kind == LawForm.FRICTION for law in state.laws)
     parts = (STRUCTURE.slider_steps if friction else STRUCTURE.law_steps)[fine]
-    # Beyond the window: an end of the forces within it would ring back into it.
-    length = frame.size * step
+    # Beyond the window: an end of the forces within it would ring back into it. They
+    # are held from there on, so that they end where the transform has damped them.
+    half = hits.filter.half
+    kept = min(frame.count + -(-2 * half // step), frame.size)
+    length = kept * step + half
     raw = np.zeros((len(hits.raw_force), length))
     known = min(length, hits.raw_force.shape[1])
     raw[:, :known] = hits.raw_force[:, :known]
@@ -277,6 +280,9 @@ def law_forces(
             (parts, hits.filter, hits.sample_rate * step),
             preload[records],
         )
-        found[records] = frame.transform(forces)
+        held = np.pad(
+            forces[..., :kept], ((0, 0), (0, 0), (0, frame.size - kept)), mode="edge"
+        )
+        found[records] = frame.transform(held)
     found /= averaging(frame.s, hits.sample_rate * step, parts)
     return found

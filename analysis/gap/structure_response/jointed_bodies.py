@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_response.surface_around import SurfaceAround
 
 DIRECTIONS = ("x", "y", "z")
@@ -158,6 +159,16 @@ class JointedBodies:
         """Rows of bolts, then of feet, shape (n_joint_rows, n_modes)."""
         feet = self.feet.reshape(-1, self.omega.size)
         return np.concatenate([self.bolt_rows, feet])
+
+    def modes_near(self, band: float) -> IntArray:
+        """Return the elastic modes up to some way above a band.
+
+        Args:
+            band: highest frequency with force [Hz].
+        """
+        highest = 2.0 * np.pi * band * STRUCTURE.tuned_band
+        elastic = self.omega > STRUCTURE.rigid_share * 2.0 * np.pi * band
+        return np.flatnonzero(elastic & (self.omega < highest))
 
     def in_modes(
         self, shapes: FloatArray, omega: FloatArray, body: IntArray

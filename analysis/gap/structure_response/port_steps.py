@@ -219,12 +219,39 @@ def _add(share: float, d: FloatArray, to: FloatArray) -> None:
 
 @compiled(fastmath=True)
 def _follow(d: FloatArray, pair: FloatArray) -> None:
-    """Put the forces of the ports before those of the step before."""
+    """Put the forces of the ports before those of the step before, and guess the next.
+
+    The guess continues a straight line, so that one correction is as good as two.
+    """
     n_ports = d.shape[0]
     for p in range(n_ports):
         for h in range(d.shape[1]):
-            pair[n_ports + p, h] = pair[p, h]
-            pair[p, h] = d[p, h]
+            now, before = d[p, h], pair[p, h]
+            pair[n_ports + p, h] = before
+            pair[p, h] = now
+            d[p, h] = 2.0 * now - before
+
+
+@compiled(fastmath=True)
+def _respond(
+    instant: FloatArray, d: FloatArray, base: FloatArray, new: FloatArray
+) -> None:
+    """Write the motion of the ports with the forces at the end of the step.
+
+    Args:
+        instant: receptances of the ports within a step, shape (n_ports, n_ports).
+        d: forces of the ports, shape (n_ports, n_hits).
+        base: motion without them, same shape.
+        new: motion (written), same shape.
+    """
+    for p in range(d.shape[0]):
+        out, moved = new[p], base[p]
+        for h in range(out.size):
+            out[h] = moved[h]
+        for q in range(d.shape[0]):
+            factor, force = instant[p, q], d[q]
+            for h in range(out.size):
+                out[h] += factor * force[h]
 
 
 @compiled(fastmath=True)
@@ -317,16 +344,15 @@ def integrate_hits(
             if moving:
                 np.dot(speeds, x, drift)
             for _ in range(corrections):
-                np.dot(instant[0], d, new)
-                _add(1.0, base, new)
+                _respond(instant[0], d, base, new)
                 if moving:
-                    np.dot(instant[1], d, speed)
-                    _add(1.0, drift, speed)
+                    _respond(instant[1], d, drift, speed)
                 _port_forces(laws, scale, (old, new, speed), (first, last), d)
             first, last, old, new = last, first, new, old
             share = (part + 1) / parts
             _add(share / parts, d, found[t + 1])
-            _add((1.0 - share) / parts, d, found[t])
+            if share < 1.0:
+                _add((1.0 - share) / parts, d, found[t])
         if asked > 0 and t > end and t % asked == 0:
             resting = True
             for h in range(n_hits):

@@ -14,6 +14,7 @@ from jointbench.analysis.gap.search.screening import Screening, screen, start_gr
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.continued_laws import with_continued
 
 SHORT = Resolution(STRUCTURE.base_windows[1])
 LONGER = Resolution(STRUCTURE.base_windows[2])
@@ -64,6 +65,7 @@ def carried(
         ]
         fits += sorted(found, key=lambda f: f.cost)[:1]
         rival = min((f.cost for f in fits), default=None)
+    fits = with_continued(few, fits, SHORT, STRUCTURE.short_iterations)
     fits.sort(key=lambda f: score(few, f))
     longer: list[Fit] = []
     rival = None
@@ -81,6 +83,7 @@ def carried(
             )
         )
         rival = min(f.cost for f in longer)
+    longer = with_continued(few, longer, LONGER, STRUCTURE.longer_iterations)
     return sorted(longer, key=lambda f: score(few, f))
 
 

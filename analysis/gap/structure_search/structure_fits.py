@@ -6,6 +6,7 @@ landed; only then are all of them fitted.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +20,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
     Resolution,
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_slopes
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import Descent, cost_at, descend, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
@@ -93,7 +94,7 @@ def _settled_in(
         terms = split(x, few.base_sd.size, candidates)
         base = x[: few.base_sd.size]
         few = few.at(base, terms, landing, few.floor, window.window)
-        problem = make_problem(few, candidates)
+        problem = _weighed(few, candidates, window)
         before = cost_at(problem, x, window)
         how = Descent(
             window,
@@ -104,6 +105,7 @@ def _settled_in(
         )
         fit = descend(problem, x, how, None if last is None else last.jacobian)
         x = fit.x
+        fit = _stated(few, fit)
         # With laws, slopes cost more than all else: those of the last round do.
         last = fit if few.nonlinear(candidates) else None
         if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
@@ -203,11 +205,11 @@ def fitted_finely(
         steps: most steps, if a law is integrated at all.
         known: slopes there, which laws keep until a step fails; see `descend`.
     """
-    problem = make_problem(bench, candidates)
+    problem = _weighed(bench, candidates, FINE)
     if not bench.nonlinear(candidates):
         return minimise(problem, start, FULL, iterations=0)
     how = Descent(FINE, iterations=steps, jacobian_resolution=FULL, exact_slopes=False)
-    return descend(problem, start, how, known)
+    return _stated(bench, descend(problem, start, how, known))
 
 
 def _whole(
@@ -225,7 +227,44 @@ def _whole(
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
     )
-    return descend(make_problem(bench, candidates), start, how, known)
+    problem = _weighed(bench, candidates, FULL)
+    return _stated(bench, descend(problem, start, how, known))
+
+
+def _weighed(
+    bench: StructureBench, candidates: Sequence[Candidate], window: Resolution
+) -> FitProblem:
+    """Return a least-squares problem; beside friction, masses stay as weighed.
+
+    Friction of a joint is that of no formula. What a law leaves is the same in all hits
+    of a point, and in a record it is one amplitude and one phase of each mode, but
+    samples count as independent. With masses, stiffnesses and slip in proportion the
+    responses hardly change, so that a percent of the masses was worth less than the
+    error of the law. Priors that are as narrow as those of weighed bodies count as
+    often as samples show such an error.
+
+    Args:
+        bench: measurement and model.
+        candidates: effects.
+        window: of the records.
+    """
+    problem = make_problem(bench, candidates)
+    if not any(c.effect.has_sliders for c in candidates):
+        return problem
+    hits, prior = bench.campaign.hits, problem.prior.copy()
+    modes = len(bench.campaign.bodies.modes_near(hits.band))
+    count = window_count(hits, window.window)
+    of_point = len(hits.names) / np.unique(hits.point).size
+    alike = of_point * count / max(2 * modes, 1)
+    weighed = np.flatnonzero(bench.base_sd < STRUCTURE.weighed_sd)
+    prior[weighed] *= max(alike / bench.coherence, 1.0)
+    return replace(problem, prior=prior)
+
+
+def _stated(bench: StructureBench, fit: Fit) -> Fit:
+    """Return a fit with the priors as stated."""
+    problem = make_problem(bench, fit.candidates)
+    return replace(fit, prior=problem.prior, cost=fit.chi2 + problem.penalty(fit.x))
 
 
 def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:

@@ -50,6 +50,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     in_whole_records,
+    leaves_much,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)
@@ -108,7 +109,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     if found := needless(done[0], screening):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
-    if not bench.uncertain and not done[0].acceptance.passed:
+    if not bench.uncertain and leaves_much(done[0]):
         pairs = _with_a_second(few, singles, progress)
         two = in_whole_records(bench, few, base, pairs, progress)
         if two and (one := alone(bench, base, two[0])):

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.analysis.gap.judgement.naming import Acceptance
-from jointbench.analysis.gap.model.effect import words_of
+from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.continued_laws import continued
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     in_full,
@@ -82,6 +83,18 @@ def in_whole_records(
     return done
 
 
+def leaves_much(best: JudgedFit) -> bool:
+    """Return whether a fit leaves enough for a second effect.
+
+    Of a law whose chi2 is within its limit, the base or a mark is refused, which no
+    second effect mends; each fit of a pair integrates the law again.
+    """
+    judged = best.acceptance
+    if best.bench.nonlinear(best.fit.candidates) and judged.excess <= judged.allowed:
+        return False
+    return not judged.passed
+
+
 def _met_in_windows(
     few: StructureBench, carried: Sequence[Fit], progress: Progress
 ) -> list[_Found]:
@@ -95,9 +108,16 @@ def _met_in_windows(
     for fit in worth_it(few, carried):
         progress(f"{words_of(fit.candidates)} where hits landed")
         own, met = in_windows(few, fit.x, fit.candidates, rival=rival)
+        if start := continued(own, met):
+            progress(f"{words_of(start[0])} where hits landed")
+            beyond, other = in_windows(own, start[1], start[0])
+            if _cost_per_row(other) < _cost_per_row(met):
+                own, met = beyond, other
         rival = min(_cost_per_row(met), rival or np.inf)
         found.append((own, without_slopes(met)))
-    return sorted(found, key=lambda one: _cost_per_row(one[1]))
+    found.sort(key=lambda one: _cost_per_row(one[1]))
+    best = {labels_of(fit.candidates): (own, fit) for own, fit in reversed(found)}
+    return sorted(best.values(), key=lambda one: _cost_per_row(one[1]))
 
 
 def _cost_per_row(fit: Fit) -> float:

@@ -130,6 +130,26 @@ def _finite(bench: StructureBench, candidate: Candidate, shape: FloatArray) -> b
     return all(np.isfinite(one.value) for one in candidate.effect.reported(values))
 
 
+@pytest.mark.parametrize("name", ["microslip", "clearance"])
+def test_laws_in_a_window_act_as_in_the_whole_record(
+    bench: StructureBench, name: str
+) -> None:
+    """Their forces are integrated to a little beyond it, and held from there on."""
+    candidate = next(c for c in bench.candidates if c.effect.name == name)
+    shape = start_grid(candidate)[0]
+    amplitude = 0.5 if name == "microslip" else 1.0
+    terms = (Term(candidate, np.concatenate([[amplitude], shape[1:]])),)
+    base = np.zeros(bench.base_sd.size)
+    parts = []
+    for window in (0.006, None):
+        law = bench.response(base, terms, window) - bench.response(base, (), window)
+        parts.append(law)
+    short, whole = parts[0], parts[1][..., : parts[0].shape[2]]
+    peak = np.abs(bench.response(base, (), None)).max(axis=2, keepdims=True)
+    assert np.abs(whole / peak).max() > 1e-3
+    assert np.abs((short - whole) / peak).max() < 5e-4
+
+
 @pytest.mark.parametrize("name", ["microslip", "cubic"])
 def test_slopes_by_a_law_are_those_of_differences(
     bench: StructureBench, name: str

@@ -1,5 +1,6 @@
 """Closed responses of bolted bodies against an integrator, slopes by differences."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -28,7 +29,7 @@ from jointbench.analysis.gap.structure_response.landing import (
 from jointbench.analysis.gap.structure_response.port_laws import (
     LawForm,
     PortLaws,
-    weibull_sliders,
+    spread_sliders,
 )
 from jointbench.analysis.gap.structure_response.table_errors import tuned_modes
 
@@ -111,7 +112,7 @@ def test_laws_at_four_bolts_are_those_of_an_integrator(
     Alone, a part of each yields gradually, as the law of Bouc and Wen does.
     """
     made = campaign()
-    slips, weights = weibull_sliders(7e-7, 1.2)
+    slips, weights = spread_sliders(7e-7, 0.32, 0.0)
     ports = tuple(3 * k + d for k in range(4) for d in (0, 1))
     linear = state_at(made)
     slides = PortLaws(ports, 0.5, slips, weights)
@@ -132,7 +133,7 @@ def test_fits_take_coarser_steps_than_what_is_judged() -> None:
     """In fits, friction is within 2e-4 of the peak and other laws within 2e-3."""
     made, weights = campaign(), landing_weights(LANDING)
     frame = hit_frame(made.hits, made.hits.force.shape[1])
-    slips, shares = weibull_sliders(7e-7, 1.2)
+    slips, shares = spread_sliders(7e-7, 0.32, 0.0)
     slides = PortLaws((0, 1, 3, 4), 0.5, slips, shares)
     for laws, allowed in (((slides,), 2e-4), (FOUR_LAWS, 2e-3)):
         state = replace(state_at(made), laws=laws)
@@ -143,22 +144,44 @@ def test_fits_take_coarser_steps_than_what_is_judged() -> None:
         assert 1e-6 < distance(coarse, fine) < allowed
 
 
-@pytest.mark.parametrize("shape", [0.4, 1.0, 2.1, 8.0])
-def test_sliders_hold_what_a_weibull_distribution_of_strengths_holds(
-    shape: float,
+def weibull(motion: float, shape: float) -> float:
+    """Return the force of Weibull's strengths with a mean of 1."""
+    scale = 1.0 / gamma(1.0 + 1.0 / shape)
+    return float(
+        quad(lambda phi: np.exp(-((phi / scale) ** shape)), 0.0, motion, epsrel=1e-8)[0]
+    )
+
+
+def contact(motion: float, exponent: float) -> float:
+    """Return the tangential force of a contact of normal force ~ depth^exponent."""
+    return 1.0 - max(1.0 - motion / exponent, 0.0) ** exponent
+
+
+def richard_abbott(motion: float, exponent: float) -> float:
+    """Return the force of Richard and Abbott 1975."""
+    return float(motion / (1.0 + motion**exponent) ** (1.0 / exponent))
+
+
+@pytest.mark.parametrize(
+    ("curve", "exponent", "tail"),
+    [
+        *((weibull, shape, 0.0) for shape in (0.4, 1.0, 2.1, 8.0)),
+        *((contact, m, -1.0 / m) for m in (1.03, 1.5, 3.0)),
+        *((richard_abbott, n, n / (2.0 * n + 1.0)) for n in (0.5, 2.0, 8.0)),
+    ],
+)
+def test_sliders_hold_what_their_strengths_hold(
+    curve: Callable[[float, float], float], exponent: float, tail: float
 ) -> None:
-    """Stiffness 1, limit the mean; between them the integral of the survival."""
-    slip = 3e-6
-    slips, weights = weibull_sliders(slip, shape)
+    """Stiffness 1, limit the mean; between them loading curves in closed form."""
+    slip, step = 3e-6, 1e-4
+    rise = curve(0.5 + step, exponent) - curve(0.5 - step, exponent)
+    slips, weights = spread_sliders(slip, 1.0 - rise / (2.0 * step), tail)
     assert weights.sum() == pytest.approx(1.0)
     assert weights @ slips == pytest.approx(slip)
-    scale = slip / gamma(1.0 + 1.0 / shape)
-    for motion in slip * np.array([0.05, 0.3, 1.0, 3.0]):
-        held = weights @ np.minimum(slips, motion)
-        whole, _ = quad(
-            lambda phi: np.exp(-((phi / scale) ** shape)), 0.0, motion, epsrel=1e-8
-        )
-        assert held == pytest.approx(whole, rel=7e-3)
+    for motion in (0.05, 0.3, 1.0, 3.0):
+        held = weights @ np.minimum(slips, slip * motion) / slip
+        assert held == pytest.approx(curve(motion, exponent), rel=3e-3)
 
 
 CHANGES: dict[str, dict[str, Any]] = {

@@ -19,6 +19,8 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.landing import mark_missed
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.continued_laws import with_continued
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
@@ -29,6 +31,7 @@ from jointbench.analysis.gap.structure_search.structure_diagnosis import (
 )
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
+    in_windows,
     settled,
 )
 from jointbench.analysis.gap.structure_search.structure_search import (
@@ -41,7 +44,11 @@ from jointbench.analysis.gap.structure_search.structure_search import (
     search_structure,
     takes,
 )
-from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, worth_it
+from jointbench.analysis.gap.structure_search.whole_records import (
+    JudgedFit,
+    leaves_much,
+    worth_it,
+)
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 
@@ -155,6 +162,35 @@ def test_a_pair_whose_second_effect_is_nearly_off_is_a_single_one(
     assert alone(found.bench, found.outcome.base, refused) is None
 
 
+def test_a_law_refused_for_the_base_alone_is_not_paired(
+    found: StructureOutcome,
+) -> None:
+    """What chi2 allows leaves nothing to a second effect beside a law."""
+    passed = found.outcome.acceptance
+    refused = replace(passed, passed=False)
+    far = replace(refused, excess=passed.allowed + 1.0)
+    micro = costly(found, 1.0, candidate(found, "microslip"))
+    bolt = costly(found, 1.0, candidate(found, "loose_bolt"))
+    assert leaves_much(JudgedFit(found.bench, micro, far))
+    assert not leaves_much(JudgedFit(found.bench, micro, refused))
+    assert leaves_much(JudgedFit(found.bench, bolt, refused))
+    assert not leaves_much(JudgedFit(found.bench, bolt, passed))
+
+
+def test_friction_leaves_masses_as_weighed(found: StructureOutcome) -> None:
+    """Narrow priors count as often as samples show one error, until stated."""
+    few = found.bench.chosen(one_of_each(found.bench.campaign.hits))
+    micro = candidate(found, "microslip")
+    x = np.append(np.zeros(few.base_sd.size), [0.3, 0.0, -1.0, 0.5, -0.1])
+    masses = [k for k, sd in enumerate(few.base_sd) if sd < STRUCTURE.weighed_sd]
+    assert masses
+    x[masses] = 2.0 * few.base_sd[masses]
+    plain = minimise(make_problem(few, (micro,)), x, SHORT, iterations=0)
+    _, held = in_windows(few, x, (micro,))
+    assert np.abs(held.prior_deviations[masses]).max() < 0.5
+    assert np.array_equal(held.prior, plain.prior)
+
+
 def test_effects_at_the_place_of_the_leader_are_tried(found: StructureOutcome) -> None:
     """A cable resonance looks like a gain in directed tests."""
     gain = candidate(found, "gain_error", 1)
@@ -200,6 +236,27 @@ def test_every_law_of_the_leading_family_is_fitted_to_whole_records(
     assert [fit.candidates for fit in worth] == [micro.candidates, macro.candidates]
     near = replace(bolt, cost=1.0)
     assert worth_it(found.bench, [near, macro, further]) == [near]
+
+
+def test_friction_continues_where_its_shape_ends(found: StructureOutcome) -> None:
+    """Both are one law: a fit at the end of its shape continues as the other."""
+    few = found.bench.chosen(one_of_each(found.bench.campaign.hits))
+    micro = candidate(found, "microslip")
+    macro = next(
+        c
+        for c in found.bench.candidates
+        if c.effect.name == "macroslip" and c.site == micro.site
+    )
+    end = macro.effect.parameters[2].bounds[1]
+    base = np.zeros(few.base_sd.size)
+    start = np.append(base, [0.3, -2.0, end, 0.5, -0.1, 0.1])
+    bound = minimise(make_problem(few, (macro,)), start, SHORT, iterations=0)
+    (beyond,) = with_continued(few, [bound], SHORT, 2)
+    assert beyond.candidates == (micro,)
+    assert beyond.cost < bound.cost
+    start[-4] -= 1.0
+    inside = minimise(make_problem(few, (macro,)), start, SHORT, iterations=0)
+    assert with_continued(few, [inside], SHORT, 2) == [inside]
 
 
 def test_one_pair_with_a_law_is_fitted_to_whole_records(
