@@ -158,7 +158,7 @@ def close(
     response = _sums_over_modes(rows, columns, d)
     response -= left.transpose(0, 2, 1) @ across
     if _added_rows(bodies, state):
-        _, force = _added_forces(bodies, state, s, response)
+        force = _forces_by_column(bodies, state, s, response)
         count = force.shape[1]
         response = response[:, :-count, :-count] - response[:, :-count, -count:] @ force
     return Closure(s, torque, response, left, system, across, columns)
@@ -195,25 +195,23 @@ def _added_stiffness(
     return np.concatenate(found, axis=1)
 
 
-def _added_forces(
+def _forces_by_column(
     bodies: JointedBodies, state: JointState, s: ComplexArray, h: ComplexArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return the forces of what is added to the bodies per row and per column.
+) -> ComplexArray:
+    """Return the forces of what is added to the bodies per unit of each column.
 
-    H' = H - H_P (I + Z H_PP)^-1 Z H_P'; their rows and columns are the last ones.
+    H' = H - H_P (I + Z H_PP)^-1 Z H_P'; rows and columns of what is added are the last.
 
     Args:
         bodies: places and rows.
         state: with what is added.
         s: Laplace variable, shape (n_lines,).
-        h: response without them, shape (n_lines, n_rows, n_columns).
+        h: response without it, shape (n_lines, n_rows, n_columns).
     """
     z = _added_stiffness(bodies, state, s)[:, :, None]
     count = z.shape[1]
     inner = np.eye(count) + z * h[:, -count:, -count:]
-    by_row = _solved(inner, z * h[:, :-count, -count:].transpose(0, 2, 1))
-    by_column = _solved(inner, z * h[:, -count:, :-count])
-    return by_row, by_column
+    return _solved(inner, z * h[:, -count:, :-count])
 
 
 def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
@@ -233,7 +231,8 @@ def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> Clo
         return ClosedRows(left, right, in_rows, in_columns)
     d = modal_receptances(bodies, state, found.s)
     bare = _sums_over_modes(rows, columns, d) - left.transpose(0, 2, 1) @ found.across
-    by_row, by_column = _added_forces(bodies, state, found.s, bare)
+    by_row = _forces_by_column(bodies, state, found.s, bare.transpose(0, 2, 1))
+    by_column = _forces_by_column(bodies, state, found.s, bare)
     count = by_row.shape[1]
     return ClosedRows(
         left[:, :, :-count] - left[:, :, -count:] @ by_row,

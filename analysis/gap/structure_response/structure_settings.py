@@ -142,12 +142,24 @@ class StructureSettings:
         "uncertain",
         "modes above act by their static part, which hardly changes",
     )
+    least_tuning: float = numerical(
+        1e-4,
+        "-",
+        "sd of the logarithm of a closed frequency below which it is no coordinate",
+        "bodies that move as rigid ones on their feet, at 20 to 60 Hz",
+    )
     open_frequency: float = numerical(
         1e-3,
         "-",
         "sd of the logarithm of a closed frequency from which it tells how large the "
         "errors of a table are",
         "modes of rigid bodies on their joints have a hundredth of it",
+    )
+    largest_size: float = numerical(
+        2.5,
+        "of the stated sd",
+        "most by which deviations of the base raise the sd of all frequencies",
+        "tables are off by 0.2 to 1 %, so a middle value is half of the largest",
     )
     rigid_share: float = numerical(
         1e-3, "of the band", "frequency below which a free mode is a rigid motion"

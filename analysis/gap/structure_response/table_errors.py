@@ -38,13 +38,19 @@ def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:
     bodies = campaign.bodies
     modes = real_modes(bodies, state)
     highest = 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
-    near = (modes.omega > STRUCTURE.rigid_share * highest) & (modes.omega < highest)
+    near = modes.omega > STRUCTURE.rigid_share * highest
+    near &= modes.omega < highest
     mass, _, _ = mass_damping_stiffness(bodies, state, 1.0)
-    spread = np.sqrt(np.diag(_coupling(campaign, bodies, modes))[near])
-    omega = modes.omega[near]
-    return TunedModes(
-        (mass @ modes.shapes[:, near]).T, omega, spread / (2.0 * omega**2)
-    )
+    coupling = _coupling(campaign, bodies, modes)
+    # Of second order: joints of bodies that move as rigid ones have little of the first.
+    apart = np.abs(modes.omega[:, None] ** 2 - modes.omega**2)
+    beside = coupling / np.hypot(apart, np.sqrt(coupling) + 1.0)
+    np.fill_diagonal(beside, 0.0)
+    sd = np.hypot(np.sqrt(np.diag(coupling)), beside.sum(axis=1))
+    sd /= 2.0 * np.where(near, modes.omega, 1.0) ** 2
+    near &= sd > STRUCTURE.least_tuning
+    rows = (mass @ modes.shapes[:, near]).T
+    return TunedModes(rows, modes.omega[near], sd[near])
 
 
 def mixing_of(

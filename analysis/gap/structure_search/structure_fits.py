@@ -23,9 +23,13 @@ from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_sl
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import Descent, cost_at, descend, minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+
+_NORMAL_MEDIAN = 0.6745
+"""Median of the absolute value of a normal variable of unit sd."""
 
 
 def approached(
@@ -71,6 +75,29 @@ def in_windows(
 def in_full(few: StructureBench, fit: Fit) -> tuple[StructureBench, Fit]:
     """Fit one record of each condition whole, from a fit in windows."""
     return _settled_in(few, fit.x, fit.candidates, FULL)
+
+
+def with_errors_found(layout: BaseLayout, base: Fit) -> BaseLayout:
+    """Return the base coordinates with frequencies as uncertain as the base shows.
+
+    The stated sd of the frequencies of a table is a guess of one size for all of them.
+    Where their median deviation is larger, an effect that shifts many modes would be
+    named for it.
+
+    Args:
+        layout: as stated.
+        base: fit without effects.
+    """
+    if layout.tuned is None:
+        return layout
+    own = np.array([layout.at(name) for name in layout.tuned.names], dtype=np.int64)
+    free = own[layout.sd[own] > STRUCTURE.open_frequency]
+    if not free.size:
+        return layout
+    found = float(np.median(np.abs(base.prior_deviations[free]))) / _NORMAL_MEDIAN
+    sd = layout.sd.copy()
+    sd[own] *= float(np.clip(found, 1.0, STRUCTURE.largest_size))
+    return replace(layout, sd=sd)
 
 
 def near_records(bench: StructureBench, fit: Fit) -> bool:
@@ -285,7 +312,7 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
     allowed = policy.floor_chi2
     if fit.candidates:
         allowed += policy.floor_chi2_share * max(base.chi2 / dof - 1.0, 0.0)
-    deviations = _deviations(bench, fit)
+    deviations = np.abs(fit.prior_deviations)
     deviation = float(deviations.max())
     reason = ""
     if chi2 > allowed:
@@ -307,19 +334,3 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         unexplained=bool(reason),
         left=None,
     )
-
-
-def _deviations(bench: StructureBench, fit: Fit) -> FloatArray:
-    """Return the deviations of the base from its nominal values [sd], as judged.
-
-    The sd of the frequencies of a table is a guess of one size for all of them, which
-    their own deviations correct where they are larger.
-    """
-    found = np.abs(fit.prior_deviations)
-    if bench.layout.tuned is not None:
-        own = [bench.layout.at(name) for name in bench.layout.tuned.names]
-        open_ones = [k for k in own if bench.base_sd[k] > STRUCTURE.open_frequency]
-        if open_ones:
-            size = float(np.sqrt(np.mean(found[open_ones] ** 2)))
-            found[own] /= max(size, 1.0)
-    return np.asarray(found)

@@ -46,6 +46,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     approached,
     fitted_finely,
     settled,
+    with_errors_found,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
@@ -87,6 +88,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     progress("base in whole records")
     bench = replace(bench, reach=STRUCTURE.final_reach)
     whole, base = _base_in_whole_records(bench, few, start)
+    bench, few = (replace(one, layout=whole.layout) for one in (bench, few))
     first = accept_structure(whole, base, base)
     if first.passed and not one_effect_takes_much(whole, base):
         return _complete(whole, base, first, UNTESTED)
@@ -267,6 +269,7 @@ def _base_in_whole_records(
     all records.
     """
     few, fit = approached(replace(few, reach=bench.reach), start, ())
+    bench = replace(bench, layout=with_errors_found(bench.layout, fit))
     if fit.chi2 * few.coherence < STRUCTURE.explaining_chi2 * fit.residual.size:
         return settled(bench, fit.x, (), near=True)
     whole = bench.at(fit.x, (), bench.landing, bench.table_floor)
