@@ -66,13 +66,18 @@ class RealModes:
 
     Attributes:
         omega: natural angular frequencies [rad/s], shape (n,).
-        damping: ratios [-], shape (n,).
+        damping: between modes [rad/s], shape (n, n).
         shapes: in the free modes, of unit modal mass, shape (n_modes, n).
     """
 
     omega: FloatArray
     damping: FloatArray
     shapes: FloatArray
+
+    @property
+    def ratios(self) -> FloatArray:
+        """Damping ratios [-], shape (n,)."""
+        return np.asarray(np.diag(self.damping) / (2.0 * self.omega))
 
 
 def real_modes(bodies: JointedBodies, state: JointState) -> RealModes:
@@ -87,8 +92,7 @@ def real_modes(bodies: JointedBodies, state: JointState) -> RealModes:
     m, c, k = (free.T @ x @ free for x in (m, c, k))
     square, vectors = scipy.linalg.eigh(k, m)
     omega = np.sqrt(np.maximum(square, STRUCTURE.least_direction))
-    damping = np.sum(vectors * (c @ vectors), axis=0) / (2.0 * omega)
-    return RealModes(omega, damping, free @ vectors)
+    return RealModes(omega, vectors.T @ c @ vectors, free @ vectors)
 
 
 def mass_damping_stiffness(

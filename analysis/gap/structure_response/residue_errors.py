@@ -70,7 +70,7 @@ def residue_errors(
         + (shape_sd * _typical(channels[:, near]) * np.abs(points)[:, None]) ** 2
         + (shape_sd * _typical(points[:, near])[:, None] * np.abs(channels)) ** 2
     )
-    damped = 2.0 * shape_sd * modes.damping * np.abs(residue)
+    damped = _damping_errors(modes, mixing, shape_sd) * np.abs(residue)
     static = np.sqrt(np.sum((error / modes.omega**2)[..., ~near] ** 2, axis=-1))
     sd = np.concatenate(
         [error[..., near], error[..., near], damped[..., near], static[..., None]], -1
@@ -78,6 +78,19 @@ def residue_errors(
     lines = _lines(modes, near, frame.s)
     rows = np.stack([frame.records(lines * one) for one in frame.force])
     return ResidueErrors(rows, sd)
+
+
+def _damping_errors(
+    modes: RealModes, mixing: FloatArray, shape_sd: float
+) -> FloatArray:
+    """Return the sd of damping ratios, shape (n,).
+
+    Joints damp with the squares of the shapes, and modes that mix share their damping.
+    """
+    own = 2.0 * shape_sd * modes.ratios
+    shared = mixing * np.abs(modes.damping) / modes.omega[:, None]
+    turned = mixing**2 * np.abs(modes.ratios[:, None] - modes.ratios)
+    return np.asarray(np.sqrt(own**2 + np.sum(shared**2 + turned**2, axis=1)))
 
 
 def typical_peaks(campaign: HitCampaign, peak: FloatArray) -> FloatArray:
@@ -131,7 +144,7 @@ def _typical(motion: FloatArray) -> FloatArray:
 
 def _lines(modes: RealModes, near: IntArray, s: ComplexArray) -> ComplexArray:
     """Return accelerations per force of unit errors, shape (n_errors, n_lines)."""
-    omega, damping = modes.omega[near, None], modes.damping[near, None]
+    omega, damping = modes.omega[near, None], modes.ratios[near, None]
     one = s**2 / (s**2 + 2.0 * damping * omega * s + omega**2)
     return np.concatenate(
         [one, one * s / omega, one**2 * 2.0 * omega / s, (s**2)[None]]

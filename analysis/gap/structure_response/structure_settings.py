@@ -142,11 +142,12 @@ class StructureSettings:
         "uncertain",
         "modes above act by their static part, which hardly changes",
     )
-    least_tuning: float = numerical(
-        1e-4,
-        "-",
-        "sd of the logarithm of a closed frequency below which it is no coordinate",
-        "bodies that move as rigid ones on their feet, at 20 to 60 Hz",
+    least_phase: float = numerical(
+        0.01,
+        "rad",
+        "sd of the phase of a closed mode at the end of a record below which its "
+        "frequency is no coordinate",
+        "bodies that move as rigid ones on their feet: 1e-4",
     )
     open_frequency: float = numerical(
         1e-3,

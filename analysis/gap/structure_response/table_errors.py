@@ -42,13 +42,14 @@ def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:
     near &= modes.omega < highest
     mass, _, _ = mass_damping_stiffness(bodies, state, 1.0)
     coupling = _coupling(campaign, bodies, modes)
-    # Of second order: joints of bodies that move as rigid ones have little of the first.
+    # Of second order: joints of rigid bodies have little of the first.
     apart = np.abs(modes.omega[:, None] ** 2 - modes.omega**2)
     beside = coupling / np.hypot(apart, np.sqrt(coupling) + 1.0)
     np.fill_diagonal(beside, 0.0)
     sd = np.hypot(np.sqrt(np.diag(coupling)), beside.sum(axis=1))
     sd /= 2.0 * np.where(near, modes.omega, 1.0) ** 2
-    near &= sd > STRUCTURE.least_tuning
+    duration = campaign.hits.response.shape[2] / campaign.hits.sample_rate
+    near &= sd * modes.omega * duration > STRUCTURE.least_phase
     rows = (mass @ modes.shapes[:, near]).T
     return TunedModes(rows, modes.omega[near], sd[near])
 
