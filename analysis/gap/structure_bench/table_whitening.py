@@ -15,9 +15,6 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
-_AT_ONCE = 8
-"""Columns that are whitened at once: more would copy a Jacobian."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PointWhitening:
@@ -57,8 +54,9 @@ class PointWhitening:
         values = np.maximum(values, STRUCTURE.least_direction)
         share = (1.0 - 1.0 / np.sqrt(1.0 + values)) / values
         removed = (vectors * share) @ vectors.T
-        for first in range(0, rows.shape[1], _AT_ONCE):
-            part = rows[:, first : first + _AT_ONCE]
+        step = STRUCTURE.columns_at_once
+        for first in range(0, rows.shape[1], step):
+            part = rows[:, first : first + step]
             known = self._in_basis(part)
             moved = removed @ self._against(part, known)
             moved = moved.reshape(len(rows), -1, part.shape[1])

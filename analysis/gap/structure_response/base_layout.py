@@ -12,6 +12,7 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import (
     JointedBodies,
     NominalBench,
 )
+from jointbench.analysis.gap.structure_response.tuned_modes import TunedModes
 
 
 class BaseName(StrEnum):
@@ -21,30 +22,6 @@ class BaseName(StrEnum):
     NORMAL_DAMPING = "bolt damping normal"
     FOOT = "foot stiffness"
     FOOT_DAMPING = "foot damping"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TunedModes:
-    """Closed modes whose frequencies an uncertain modal table leaves open.
-
-    Attributes:
-        rows: modal force on the free modes by each, shape (n_tuned, n_modes).
-        omega: nominal natural angular frequencies [rad/s], shape (n_tuned,).
-        sd: of the logarithms of their frequencies [-], shape (n_tuned,).
-    """
-
-    rows: FloatArray
-    omega: FloatArray
-    sd: FloatArray
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze(self, "rows", "omega", "sd")
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of their coordinates."""
-        return tuple(tuned_name(k + 1) for k in range(self.omega.size))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,11 +78,6 @@ def mass_name(body: str) -> str:
 def bolt_name(number: int) -> str:
     """Return the name of a coordinate of differences between bolts."""
     return f"bolt contrast {number}"
-
-
-def tuned_name(number: int) -> str:
-    """Return the name of the frequency coordinate of a closed mode."""
-    return f"frequency of mode {number}"
 
 
 def base_layout(

@@ -12,7 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    IntArray,
+)
 from jointbench.analysis.gap.structure_response.closed_modes import (
     RealModes,
     real_modes,
@@ -142,7 +147,7 @@ def _typical(motion: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.mean(motion**2, axis=1)))[:, None]
 
 
-def _lines(modes: RealModes, near: IntArray, s: ComplexArray) -> ComplexArray:
+def _lines(modes: RealModes, near: BoolArray, s: ComplexArray) -> ComplexArray:
     """Return accelerations per force of unit errors, shape (n_errors, n_lines)."""
     omega, damping = modes.omega[near, None], modes.ratios[near, None]
     one = s**2 / (s**2 + 2.0 * damping * omega * s + omega**2)

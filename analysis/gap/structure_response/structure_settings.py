@@ -152,7 +152,7 @@ class StructureSettings:
     open_frequency: float = numerical(
         1e-3,
         "-",
-        "sd of the logarithm of a closed frequency from which it tells how large the "
+        "sd of the logarithm of a closed frequency from which it shows how large the "
         "errors of a table are",
         "modes of rigid bodies on their joints have a hundredth of it",
     )
@@ -313,6 +313,14 @@ class StructureSettings:
         "effects take 0.04 and less of complete benches with exact tables (seeds "
         "481101 to 481104), a hidden one took 0.86 (492514)",
     )
+    uncertain_test: float = numerical(
+        7.0,
+        "chi2",
+        "drop of a directed test of an accepted base, in a longer window, from which "
+        "one effect is sought where the modal table is uncertain",
+        "3 to 5 of complete models (seeds 503103, 503200, 503207), 8 and 9 of effects "
+        "that whole records show (514510, 514511)",
+    )
     uncertain_drop: float = numerical(
         25.0,
         "chi2",
@@ -349,6 +357,12 @@ class StructureSettings:
         "of the noise",
         "variance of a direction below which whitening leaves it",
         "it changes a residual by 5e-5 of its part along the direction",
+    )
+    columns_at_once: int = numerical(
+        8,
+        "columns",
+        "columns of slopes that are whitened at once for errors of a table",
+        "all of them would be a second copy of the slopes",
     )
     surface_radius: float = numerical(
         0.065,

@@ -11,7 +11,6 @@ the modes of the closed structure (Fox and Kapoor, AIAA J. 6 (1968), eqs. 3 to 6
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.structure_response.base_layout import TunedModes
 from jointbench.analysis.gap.structure_response.closed_modes import (
     RealModes,
     mass_damping_stiffness,
@@ -21,6 +20,7 @@ from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.joint_state import JointState
 from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.tuned_modes import TunedModes
 
 
 def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:

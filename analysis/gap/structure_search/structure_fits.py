@@ -10,6 +10,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.stats import norm
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
@@ -28,7 +29,7 @@ from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
-_NORMAL_MEDIAN = 0.6745
+_NORMAL_MEDIAN = float(norm.ppf(0.75))
 """Median of the absolute value of a normal variable of unit sd."""
 
 
