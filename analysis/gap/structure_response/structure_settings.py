@@ -313,14 +313,6 @@ class StructureSettings:
         "effects take 0.04 and less of complete benches with exact tables (seeds "
         "481101 to 481104), a hidden one took 0.86 (492514)",
     )
-    uncertain_test: float = numerical(
-        7.0,
-        "chi2",
-        "drop of a directed test of an accepted base, in a longer window, from which "
-        "one effect is sought where the modal table is uncertain",
-        "3 to 5 of complete models (seeds 503103, 503200, 503207), 8 and 9 of effects "
-        "that whole records show (514510, 514511)",
-    )
     uncertain_drop: float = numerical(
         25.0,
         "chi2",

@@ -146,7 +146,7 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
     ]
     if whole.uncertain:
         found = screen(own, near, own.candidates, resolution=LONGER)
-        return found.largest > STRUCTURE.uncertain_test
+        return found.largest > found.threshold
     found = screen(own, near, linear, resolution=LONGER)
     return found.largest > STRUCTURE.taken_share * near.chi2
 

@@ -8,7 +8,10 @@ import numpy as np
 
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import labels_of, words_of
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
@@ -71,6 +74,8 @@ def in_whole_records(
         if fit.cost > near[0][1].cost + STRUCTURE.cost_above_best:
             break
         progress(f"{words_of(fit.candidates)} in all records")
+        # Slopes of all records are the largest array there is.
+        done[:1] = [_at_rest(one) for one in done[:1]]
         whole, found = settled(
             bench, fit.x, fit.candidates, near=near_records(own, fit)
         )
@@ -78,9 +83,23 @@ def in_whole_records(
         done.append(JudgedFit(whole.at_rest(), found, judged))
         del whole
         done.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
-        # The slopes of all records are needed of the best fit alone.
         done[1:] = [replace(one, fit=without_slopes(one.fit)) for one in done[1:]]
-    return done
+    return [_with_slopes(one) for one in done[:1]] + done[1:]
+
+
+def _at_rest(one: JudgedFit) -> JudgedFit:
+    """Return a fit without slopes, but for those of laws, which take long."""
+    if one.bench.nonlinear(one.fit.candidates):
+        return one
+    return replace(one, fit=without_slopes(one.fit))
+
+
+def _with_slopes(one: JudgedFit) -> JudgedFit:
+    """Return a fit with its slopes, which a verdict needs."""
+    if one.fit.jacobian.size:
+        return one
+    problem = make_problem(one.bench, one.fit.candidates)
+    return replace(one, fit=minimise(problem, one.fit.x, FULL, iterations=0))
 
 
 def leaves_much(best: JudgedFit) -> bool:
