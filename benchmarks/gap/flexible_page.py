@@ -11,12 +11,14 @@ from pathlib import Path
 
 import numpy as np
 from flexible_estimates import base_pairs, effect_pairs, loop_error
-from flexible_rows import ROWS, Json, counted
+from flexible_rows import Json, counted
 from outcomes import share_text
 
 PAGE = Path(__file__).parents[2] / "docs" / "gap-structures-score.md"
 FRICTION = ("microslip", "macroslip")
 """Effects that may be counted apart."""
+_ONE_CALL = 30
+"""Largest distance of seeds of one call: some are skipped."""
 _LOOP = 0.15
 """Largest error of a loop that counts as right [-]."""
 _BARS = {
@@ -33,16 +35,17 @@ _HEAD = """# The gap on bolted bodies: how often the verdict is right
 Made by `benchmarks/gap/flexible_page.py` on {date} from {count} diagnoses by the
 command. The simulated benches ([flexible-benches.md](flexible-benches.md)) differ from
 the model in discretisation and integrator, and in everything the nominal values leave
-open; their friction is drawn among laws that the model does not have
-([0481](decisions/0481-friction-of-simulated-bolts-is-drawn-among-laws.md)). Effects
-have a margin of 50 or more. Shares have 95 % Wilson intervals; seeds of a row begin at
-the one stated and are consecutive, but for those whose effect is counted apart:
-{apart}.
+open; their friction is drawn among three laws
+([0481](decisions/0481-friction-of-simulated-bolts-is-drawn-among-laws.md)), of which
+that of Bouc and Wen is none of the model's
+([0496](decisions/0496-strengths-of-sliders-have-an-end-or-a-tail.md)). Effects have a
+margin of 50 or more. Shares have 95 % Wilson intervals; seeds of a row are those
+stated, but for those whose effect is counted apart: {apart}.
 
 ## Verdicts
 
 | row | bar | right | right or family | a wrong name | one of two | ambiguous | \
-unknown | none | place right | first seed |
+unknown | none | place right | seeds |
 |---|---|---|---|---|---|---|---|---|---|---|
 """
 _ROW_WORDS = """
@@ -64,6 +67,14 @@ def _count(runs: Sequence[Json], word: str) -> str:
     return str(sum(run["word"] == word for run in runs))
 
 
+def _seeds(runs: Sequence[Json]) -> str:
+    """Return the ranges of seeds, those of one call being near each other."""
+    seeds = sorted(int(run["seed"]) for run in runs)
+    starts = [s for k, s in enumerate(seeds) if not k or s - seeds[k - 1] > _ONE_CALL]
+    ends = [max(s for s in seeds if s < n) for n in starts[1:]] + seeds[-1:]
+    return ", ".join(f"{a} to {b}" for a, b in zip(starts, ends, strict=True))
+
+
 def verdict_rows(runs: Sequence[Json]) -> Iterable[str]:
     """Yield a line of the table of verdicts for each row that has runs."""
     for row, bar in _BARS.items():
@@ -79,7 +90,7 @@ def verdict_rows(runs: Sequence[Json]) -> Iterable[str]:
             str(sum(run["found"]["verdict"] == word for run in own))
             for word in ("unknown", "none")
         ]
-        cells += [share_text(sum(places), len(places)), str(ROWS[row][2])]
+        cells += [share_text(sum(places), len(places)), _seeds(own)]
         yield f"| {' | '.join(cells)} |"
 
 
