@@ -2,6 +2,7 @@
 """Write docs/gap-structures-score.md from the runs of flexible_rows.py.
 
 Usage: python benchmarks/gap/flexible_page.py RUNS.jsonl [...] [--out PAGE.md]
+    [--note TEXT]
 """
 
 import argparse
@@ -48,6 +49,7 @@ stated, but for those whose effect is counted apart: {apart}.
 unknown | none | place right | seeds |
 |---|---|---|---|---|---|---|---|---|---|---|
 """
+_VERDICTS = "## Verdicts\n"
 _ROW_WORDS = """
 `null`: nothing missing. `single`: one effect, each of the catalogue in turn.
 `hidden`: the true effect is taken out of the catalogue; right is `unknown`. `pair`: two
@@ -221,9 +223,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", type=Path, nargs="+")
     parser.add_argument("--out", type=Path, default=PAGE)
+    parser.add_argument("--note", default="", help="what the runs do not say, in words")
     arguments = parser.parse_args()
     runs = [run for path in arguments.runs for run in counted(path)]
-    arguments.out.write_text(page(runs), encoding="utf-8")
+    note = f"{arguments.note}\n\n" if arguments.note else ""
+    noted = page(runs).replace(_VERDICTS, f"{note}{_VERDICTS}", 1)
+    arguments.out.write_text(noted, encoding="utf-8")
 
 
 if __name__ == "__main__":
