@@ -20,6 +20,7 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import (
     HitPoint,
     JointedBodies,
     MassPlace,
+    NominalBench,
 )
 from jointbench.analysis.gap.structure_response.port_laws import LawForm, PortLaws
 
@@ -29,6 +30,25 @@ FILTER = CommonFilter(scipy.signal.firwin(41, 4500.0, fs=RATE), 2)
 PARTS = 4
 """Intervals per sample, after each of which the sliders remember where they stuck."""
 BOLTS, FEET, CHANNELS, ELASTIC = 4, 4, 3, 4
+
+
+NOMINAL = NominalBench(
+    stiffness=np.array([3e6, 4e6, 8e6]),
+    damping=np.array([60.0, 60.0, 90.0]),
+    stiffness_sd=0.1,
+    damping_sd=0.3,
+    bolt_sd=0.03,
+    foot=(4e4, 40.0),
+    foot_sd=(0.2, 0.3),
+    loss=(0.004, 0.3),
+    modulus_sd=0.02,
+    mass_sd=0.001,
+    aim_sd=1e-3,
+    tilt_sd=0.02,
+    torque_reference=40.0,
+    bolt_places=np.zeros((0, 2)),
+)
+"""Nominal values of joints of them."""
 
 
 def random_bodies(

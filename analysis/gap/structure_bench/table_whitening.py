@@ -28,6 +28,8 @@ class PointWhitening:
         within: directions in the basis, WQ', shape
             (n_records, n_directions, n_channels, n).
         inner: W A^-1 W', shape (n_all_directions, n_all_directions).
+        removed: what the inverse root of the whole takes of W A^-1, of that shape.
+        twice: 2N - NN, which A^-1 takes where its root takes N.
     """
 
     directions: FloatArray
@@ -35,6 +37,8 @@ class PointWhitening:
     taken: FloatArray
     within: FloatArray
     inner: FloatArray
+    removed: FloatArray
+    twice: FloatArray
 
     def found(self, rows: FloatArray) -> FloatArray:
         """Return the most likely directions of rows, (n_records, n_directions).
@@ -50,15 +54,11 @@ class PointWhitening:
 
     def whiten(self, rows: FloatArray) -> None:
         """Whiten rows over sigma in place, (n_records, n, n_channels, n_samples)."""
-        values, vectors = np.linalg.eigh(self.inner)
-        values = np.maximum(values, STRUCTURE.least_direction)
-        share = (1.0 - 1.0 / np.sqrt(1.0 + values)) / values
-        removed = (vectors * share) @ vectors.T
         step = STRUCTURE.columns_at_once
         for first in range(0, rows.shape[1], step):
             part = rows[:, first : first + step]
             known = self._in_basis(part)
-            moved = removed @ self._against(part, known)
+            moved = self.removed @ self._against(part, known)
             moved = moved.reshape(len(rows), -1, part.shape[1])
             known -= np.einsum("rdca,rdn->nca", self.within, moved, optimize=True)
             known = np.einsum("cab,ncb->nca", self.taken, known, optimize=True)
@@ -89,8 +89,7 @@ class PointWhitening:
                 for d, row in zip(self.directions, rows, strict=True)
             ]
         )
-        twice = _of_inverse(self.taken)
-        known = np.einsum("cab,ncb->nca", twice, known, optimize=True)
+        known = np.einsum("cab,ncb->nca", self.twice, known, optimize=True)
         found -= np.einsum("rdca,nca->rdn", self.within, known, optimize=True)
         return np.asarray(found.reshape(-1, count))
 
@@ -154,10 +153,11 @@ def point_whitening(
     basis = basis.reshape(len(root), records, length).transpose(1, 0, 2)
     basis = np.ascontiguousarray(basis)
     within = np.stack([d @ q.T for d, q in zip(directions, basis, strict=True)])
+    twice = 2.0 * taken - taken @ taken
     inner = -np.einsum(
         "rdca,cab,secb->rdse",
         within,
-        _of_inverse(taken),
+        twice,
         within,
         optimize=True,
     )
@@ -165,7 +165,8 @@ def point_whitening(
         flat = own.reshape(count, -1)
         inner[r, :, r] += flat @ flat.T
     inner = inner.reshape(records * count, -1)
-    return PointWhitening(directions, basis, taken, within, inner)
+    removed = _removed(inner)
+    return PointWhitening(directions, basis, taken, within, inner, removed, twice)
 
 
 def _taken(rows: FloatArray) -> FloatArray:
@@ -175,6 +176,9 @@ def _taken(rows: FloatArray) -> FloatArray:
     return np.asarray((vectors * share) @ vectors.T)
 
 
-def _of_inverse(taken: FloatArray) -> FloatArray:
-    """Return what the inverse itself takes, where its root takes N: 2N - NN."""
-    return np.asarray(2.0 * taken - taken @ taken)
+def _removed(inner: FloatArray) -> FloatArray:
+    """Return M, so that I - W'MW is the inverse root of I + W'W, from WW'."""
+    values, vectors = np.linalg.eigh(inner)
+    values = np.maximum(values, STRUCTURE.least_direction)
+    share = (1.0 - 1.0 / np.sqrt(1.0 + values)) / values
+    return np.asarray((vectors * share) @ vectors.T)

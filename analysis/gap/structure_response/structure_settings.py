@@ -138,8 +138,8 @@ class StructureSettings:
     tuned_band: float = numerical(
         1.3,
         "of the band",
-        "free modes up to there have a frequency of their own where the modal table is "
-        "uncertain",
+        "closed modes up to there have a frequency of their own where the modal table "
+        "is uncertain",
         "modes above act by their static part, which hardly changes",
     )
     least_phase: float = numerical(

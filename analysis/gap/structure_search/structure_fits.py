@@ -10,7 +10,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
@@ -28,9 +28,6 @@ from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
-
-_NORMAL_MEDIAN = float(norm.ppf(0.75))
-"""Median of the absolute value of a normal variable of unit sd."""
 
 
 def approached(
@@ -95,7 +92,8 @@ def with_errors_found(layout: BaseLayout, base: Fit) -> BaseLayout:
     free = own[layout.sd[own] > STRUCTURE.open_frequency]
     if not free.size:
         return layout
-    found = float(np.median(np.abs(base.prior_deviations[free]))) / _NORMAL_MEDIAN
+    # The median of the absolute value of a normal variable is its upper quartile.
+    found = float(np.median(np.abs(base.prior_deviations[free])) / ndtri(0.75))
     sd = layout.sd.copy()
     sd[own] *= float(np.clip(found, 1.0, STRUCTURE.largest_size))
     return replace(layout, sd=sd)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
+from bolted_bodies import FILTER, NOMINAL, integrated, random_bodies, smooth_hits
 from scipy.integrate import quad
 from scipy.special import gamma
 
@@ -21,7 +21,6 @@ from jointbench.analysis.gap.structure_response.joint_state import (
     JointState,
     state_of,
 )
-from jointbench.analysis.gap.structure_response.jointed_bodies import NominalBench
 from jointbench.analysis.gap.structure_response.landing import (
     landing_weights,
     point_columns,
@@ -33,22 +32,6 @@ from jointbench.analysis.gap.structure_response.port_laws import (
 )
 from jointbench.analysis.gap.structure_response.table_errors import tuned_modes
 
-NOMINAL = NominalBench(
-    stiffness=np.array([3e6, 4e6, 8e6]),
-    damping=np.array([60.0, 60.0, 90.0]),
-    stiffness_sd=0.1,
-    damping_sd=0.3,
-    bolt_sd=0.03,
-    foot=(4e4, 40.0),
-    foot_sd=(0.2, 0.3),
-    loss=(0.004, 0.3),
-    modulus_sd=0.02,
-    mass_sd=0.001,
-    aim_sd=1e-3,
-    tilt_sd=0.02,
-    torque_reference=40.0,
-    bolt_places=np.zeros((0, 2)),
-)
 LANDING = np.array([[0.02, -0.01, 8e-4, -5e-4], [0.0, 0.0, 0.0, 0.0]])
 
 

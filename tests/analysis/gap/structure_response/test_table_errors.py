@@ -4,31 +4,14 @@
 from dataclasses import replace
 
 import numpy as np
-from bolted_bodies import random_bodies, smooth_hits
+from bolted_bodies import NOMINAL, random_bodies, smooth_hits
 
 from jointbench.analysis.gap.structure_response.base_layout import base_layout
 from jointbench.analysis.gap.structure_response.closed_modes import real_modes
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.joint_state import state_of
-from jointbench.analysis.gap.structure_response.jointed_bodies import NominalBench
 from jointbench.analysis.gap.structure_response.table_errors import tuned_modes
 
-NOMINAL = NominalBench(
-    stiffness=np.array([3e6, 4e6, 8e6]),
-    damping=np.array([60.0, 60.0, 90.0]),
-    stiffness_sd=0.1,
-    damping_sd=0.3,
-    bolt_sd=0.03,
-    foot=(4e4, 40.0),
-    foot_sd=(0.2, 0.3),
-    loss=(0.004, 0.3),
-    modulus_sd=0.02,
-    mass_sd=0.001,
-    aim_sd=1e-3,
-    tilt_sd=0.02,
-    torque_reference=40.0,
-    bolt_places=np.zeros((0, 2)),
-)
 MADE = HitCampaign("made", random_bodies(), NOMINAL, smooth_hits())
 
 
