@@ -23,6 +23,7 @@ from jointbench.analysis.gap.structure_bench.place_sites import (
 )
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
+    far_starts,
     one_parameter,
 )
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
@@ -84,7 +85,15 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
     one_parameter(
         "added_mass",
         "mass",
-        Parameter("m", "kg", "mass", lower=0.0, upper=0.5, off=0.0),
+        Parameter(
+            "m",
+            "kg",
+            "mass",
+            lower=0.0,
+            upper=0.5,
+            off=0.0,
+            far=far_starts(0.02, 0.45),
+        ),
         "Ewins 2000, Modal Testing, sec. 3.9",
         each_place,
         _attach,
@@ -93,7 +102,13 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
         "added_stiffness",
         "stiffness",
         Parameter(
-            "k", "N/m", "stiffness", lower=0.0, upper=100.0, off=0.0, far=(0.1, 1.0)
+            "k",
+            "N/m",
+            "stiffness",
+            lower=0.0,
+            upper=100.0,
+            off=0.0,
+            far=far_starts(0.05, 50.0),
         ),
         "Ewins 2000, Modal Testing, sec. 3.2",
         each_direction,
@@ -104,7 +119,15 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
             "hidden_mode",
             "mode",
             (
-                Parameter("m", "kg", "mass", lower=0.0, upper=0.5, off=0.0),
+                Parameter(
+                    "m",
+                    "kg",
+                    "mass",
+                    lower=0.0,
+                    upper=0.5,
+                    off=0.0,
+                    far=(0.01, 0.03, 0.1, 0.3),
+                ),
                 Parameter(
                     "f",
                     "Hz",
@@ -169,7 +192,12 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
             "stiffness",
             (
                 Parameter(
-                    "rise", "-", lower=-4.0, upper=8.0, off=0.0, far=(2.0, 3.5, 5.0)
+                    "rise",
+                    "-",
+                    lower=-4.0,
+                    upper=8.0,
+                    off=0.0,
+                    far=(-2.0, -1.0, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0),
                 ),
             ),
             "ISO 7626-5:2019, 6.2",

@@ -21,6 +21,7 @@ from jointbench.analysis.gap.structure_bench.joint_axes import bolt_arms, joint_
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     Change,
     StructureEffect,
+    far_starts,
     one_parameter,
 )
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
@@ -95,7 +96,7 @@ _PRELOAD = "Ibrahim and Pettit 2005, J. Sound Vib. 279, 857"
 
 
 def _compliance(name: str) -> Parameter:
-    far = (0.1, 0.3, 1.0, 3.0, 10.0)
+    far = far_starts(0.05, 100.0)
     return Parameter(
         name, "m/N", "compliance", lower=0.0, upper=300.0, off=0.0, far=far
     )
@@ -140,7 +141,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
                 lower=0.0,
                 upper=30.0,
                 off=0.0,
-                far=(0.3, 1.0),
+                far=far_starts(0.05, 20.0),
             ),
             _COUPLING,
             joint_axes,
@@ -155,7 +156,12 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
             "stiffness",
             (
                 Parameter(
-                    "loss", "-", lower=0.0, upper=6.0, off=0.0, far=(0.7, 1.5, 2.5, 3.5)
+                    "loss",
+                    "-",
+                    lower=0.0,
+                    upper=6.0,
+                    off=0.0,
+                    far=(0.7, 1.1, 1.5, 2.0, 2.5, 3.0, 3.5, 4.5, 5.5),
                 ),
             ),
             _COUPLING,

@@ -4,6 +4,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.model.effect import Candidate, Effect, Site, Term
@@ -14,6 +16,8 @@ from jointbench.analysis.gap.structure_response.joint_state import JointState
 Change = Callable[[JointState, HitCampaign, Site, FloatArray], JointState]
 """Adds an effect at a site with its values [SI] to a state."""
 Sites = Callable[[HitCampaign], tuple[Site, ...]]
+_APART = 1.5
+"""Ratio of starts of a strong effect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +47,20 @@ class StructureEffect:
     by_frequency: bool = False
     aimed: bool = False
     alone: bool = False
+
+
+def far_starts(first: float, last: float) -> tuple[float, ...]:
+    """Return starts of a strong effect, each half as large again as the one before.
+
+    From a stiff spring or a soft joint of less than two thirds or more than twice its
+    value, fits in the first milliseconds ended at a weak one.
+
+    Args:
+        first: smallest start.
+        last: no start is larger.
+    """
+    count = 1 + int(np.log(last / first) / np.log(_APART))
+    return tuple(first * _APART**k for k in range(count))
 
 
 def one_parameter(
