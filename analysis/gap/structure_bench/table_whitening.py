@@ -54,18 +54,15 @@ class PointWhitening:
 
     def whiten(self, rows: FloatArray) -> None:
         """Whiten rows over sigma in place, (n_records, n, n_channels, n_samples)."""
-        step = STRUCTURE.columns_at_once
-        for first in range(0, rows.shape[1], step):
-            part = rows[:, first : first + step]
-            known = self._in_basis(part)
-            moved = self.removed @ self._against(part, known)
-            moved = moved.reshape(len(rows), -1, part.shape[1])
-            known -= np.einsum("rdca,rdn->nca", self.within, moved, optimize=True)
-            known = np.einsum("cab,ncb->nca", self.taken, known, optimize=True)
-            for r in range(len(rows)):
-                flat = self.directions[r].reshape(moved.shape[1], -1)
-                part[r] -= (moved[r].T @ flat).reshape(part[r].shape)
-                part[r] -= known @ self.basis[r]
+        known = self._in_basis(rows)
+        moved = self.removed @ self._against(rows, known)
+        moved = moved.reshape(len(rows), -1, rows.shape[1])
+        known -= np.einsum("rdca,rdn->nca", self.within, moved, optimize=True)
+        known = np.einsum("cab,ncb->nca", self.taken, known, optimize=True)
+        for r in range(len(rows)):
+            flat = self.directions[r].reshape(moved.shape[1], -1)
+            rows[r] -= (moved[r].T @ flat).reshape(rows[r].shape)
+            rows[r] -= known @ self.basis[r]
 
     def _in_basis(self, rows: FloatArray) -> FloatArray:
         """Return Q times rows, shape (n, n_channels, n_basis)."""
@@ -108,11 +105,14 @@ class TableWhitening:
 
     def __call__(self, rows: FloatArray) -> FloatArray:
         """Whiten rows of records, shape (n_records, n, n_rows), in place."""
+        step = STRUCTURE.columns_at_once
         for own, point in zip(self.records, self.points, strict=True):
-            _, _, *shape = point.directions.shape
-            block = rows[own].reshape(len(own), rows.shape[1], *shape)
-            point.whiten(block)
-            rows[own] = block.reshape(len(own), rows.shape[1], -1)
+            for first in range(0, rows.shape[1], step):
+                some = slice(first, first + step)
+                part = np.ascontiguousarray(rows[own, some])
+                block = part.reshape(*part.shape[:2], *point.directions.shape[2:])
+                point.whiten(block)
+                rows[own, some] = part
         return rows
 
     def found(self, rows: FloatArray) -> FloatArray:

@@ -139,6 +139,9 @@ def _settled_in(
         if not near_records(few, fit):
             break
         landing, _ = few.landed(fit.base, fit.terms, window.window)
+        if last is None:
+            # Slopes are the largest array there is: none are kept twice.
+            fit = without_slopes(fit)
     return few, fit
 
 
@@ -183,8 +186,7 @@ def settled(
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
         law = bench.nonlinear(candidates)
         if not law:
-            # Slopes of all records are the largest array there is: none are kept twice.
-            fit = without_slopes(fit)
+            fit = without_slopes(fit)  # as above
         before = fit.cost
         known = fit.jacobian if law else None
         fit = _whole(bench, fit.x, candidates, known, exact=near and not law)

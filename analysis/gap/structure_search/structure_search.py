@@ -84,10 +84,10 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
     start = _base_in_windows(few)
-    few = few.at(start, (), few.landing, few.table_floor)
     progress("base in whole records")
     bench = replace(bench, reach=STRUCTURE.final_reach)
     whole, base = _base_in_whole_records(bench, few, start)
+    few = few.at(start, (), few.landing, few.table_floor)
     bench, few = (replace(one, layout=whole.layout) for one in (bench, few))
     first = accept_structure(whole, base, base)
     if first.passed and not one_effect_takes_much(whole, base):
@@ -268,7 +268,8 @@ def _base_in_whole_records(
     A base far off is fitted to one record of each condition, and its chi2 is that of
     all records.
     """
-    few, fit = approached(replace(few, reach=bench.reach), start, ())
+    few = replace(few, reach=bench.reach, floor=few.table_floor)
+    fit = without_slopes(approached(few, start, ())[1])
     bench = replace(bench, layout=with_errors_found(bench.layout, fit))
     if fit.chi2 * few.coherence < STRUCTURE.explaining_chi2 * fit.residual.size:
         return settled(bench, fit.x, (), near=True)
