@@ -23,6 +23,7 @@ from jointbench.analysis.gap.structure_bench.sensor_effects import SENSOR_EFFECT
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     Change,
     StructureEffect,
+    far_starts,
 )
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.joint_state import JointState
@@ -157,14 +158,22 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
         "clearance",
         "contact",
         (
-            Parameter("k", "N/m", "stiffness", lower=0.0, upper=100.0, off=0.0),
+            Parameter(
+                "k",
+                "N/m",
+                "stiffness",
+                lower=0.0,
+                upper=100.0,
+                off=0.0,
+                far=far_starts(0.5, 20.0),
+            ),
             Parameter(
                 "g",
                 "m",
                 "travel",
                 lower=1e-4,
                 upper=3.0,
-                starts=(0.01, 0.03, 0.1, 0.3),
+                starts=(0.01, 0.02, 0.04, 0.08, 0.16, 0.32),
                 transform=Transform.LOG,
             ),
         ),
@@ -176,7 +185,13 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
         "stiffness",
         (
             Parameter(
-                "k3", "N/m^3", "stiffness/travel^2", lower=0.0, upper=1e5, off=0.0
+                "k3",
+                "N/m^3",
+                "stiffness/travel^2",
+                lower=0.0,
+                upper=1e5,
+                off=0.0,
+                far=far_starts(0.3, 100.0),
             ),
         ),
         LawForm.CUBIC,
@@ -185,7 +200,17 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
     _law(
         "quadratic",
         "stiffness",
-        (Parameter("k2", "N/m^2", "stiffness/travel", lower=-1e3, upper=1e3, off=0.0),),
+        (
+            Parameter(
+                "k2",
+                "N/m^2",
+                "stiffness/travel",
+                lower=-1e3,
+                upper=1e3,
+                off=0.0,
+                far=(-10.0, -4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0, 10.0),
+            ),
+        ),
         LawForm.QUADRATIC,
         "Nayfeh and Mook 1979, Nonlinear Oscillations, sec. 4.2",
     ),
