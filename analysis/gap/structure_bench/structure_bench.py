@@ -21,20 +21,10 @@ from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.structure_bench.law_slopes import LawSlopes
+from jointbench.analysis.gap.structure_bench.record_whitening import RecordWhitening
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     StructureEffect,
     structure_state,
-)
-from jointbench.analysis.gap.structure_bench.table_whitening import (
-    TableWhitening,
-    point_whitening,
-)
-from jointbench.analysis.gap.structure_bench.whitening import (
-    HitWhitening,
-    HumWhitening,
-    directions_found,
-    hum_whitening,
-    whitening_of,
 )
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_campaign import (
@@ -262,7 +252,7 @@ class StructureBench:
         r = modelled - self.campaign.hits.response[:, :, :count]
         if self.directions is not None:
             r -= self._expected(count)
-        return self._whitened(r[:, None]).ravel()
+        return self.whitening(r[:, None]).ravel()
 
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
@@ -287,11 +277,8 @@ class StructureBench:
             np.divide(rows, self.sigma[:, :, None], out=columns[k])
         for k, forces in enumerate(added):
             columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
-        for one in columns:
-            self._steadied(one)
-        flat = columns.reshape(len(columns), records, -1)
-        self._white(model.shape[1])(flat.transpose(1, 0, 2))
-        return flat.reshape(len(columns), -1).T
+        self.whitening.in_place(columns.transpose(1, 0, 2, 3))
+        return columns.reshape(len(columns), -1).T
 
     def refine(
         self,
@@ -352,14 +339,16 @@ class StructureBench:
         modelled = self.response(base, terms, window)
         count = modelled.shape[2]
         r = modelled - self.campaign.hits.response[:, :, :count] - self._expected(count)
-        scaled = self._steadied(r / self.sigma[:, :, None])
-        if self.uncertain:
-            found = self._table_whitening(count).found(scaled)
-        else:
-            rows = _flat(self._scaled(count))
-            found = directions_found(rows, scaled.reshape(len(r), -1))
-        found = found * self.direction_sd
+        found = self.whitening.found(r) * self.direction_sd
         return found[:, :4], found[:, 4]
+
+    @property
+    def whitening(self) -> RecordWhitening:
+        """Whitening of all records for what is known of their errors."""
+        hits, uncertain = self.campaign.hits, self.uncertain
+        return RecordWhitening(
+            hits, self.sigma, self.directions, self.errors, uncertain, self.kept
+        )
 
     @property
     def direction_sd(self) -> FloatArray:
@@ -429,52 +418,6 @@ class StructureBench:
         self.kept[place] = key, found
         return found
 
-    def _scaled(self, count: int) -> FloatArray:
-        """Return directions over sigma, (n_records, 5, n_channels, n_samples)."""
-        if self.directions is None:
-            raise ValueError("directions are computed by `at` first")
-        rows = self.directions[..., :count] / self.sigma[:, None, :, None]
-        return self._steadied(rows)
-
-    def _steadied(self, rows: FloatArray) -> FloatArray:
-        """Whiten rows over sigma for what is left of the hum of channels, in place.
-
-        What is left of it is far below the errors of an uncertain modal table.
-
-        Args:
-            rows: shape (n_records, ..., n_channels, n_samples).
-        """
-        hits, count = self.campaign.hits, rows.shape[-1]
-        if not hits.hum_left.size or self.uncertain:
-            return rows
-        found: HumWhitening = self._kept(
-            ("hum_left", count),
-            lambda: hum_whitening(hits.hum_left[:, :count], hits.noise / self.sigma),
-        )
-        return found(rows)
-
-    def _table_whitening(self, count: int) -> TableWhitening:
-        """Return the whitening for errors of the modal table and directions of hits."""
-        found: TableWhitening = self._kept(
-            ("table", count), lambda: self._made_table_whitening(count)
-        )
-        return found
-
-    def _made_table_whitening(self, count: int) -> TableWhitening:
-        hits, errors = self.campaign.hits, self.errors
-        if errors is None:
-            raise ValueError("errors of the table are computed by `at` first")
-        scaled = self._scaled(count)
-        groups = hits.of_points
-        points = []
-        for own in groups:
-            of_record = self.sigma[own].mean(axis=1)
-            of_channel = self.sigma[own[0]] / of_record[0]
-            unit = errors.rows[own, :, :count] / of_record[:, None, None]
-            sd = errors.sd[hits.point[own[0]]] / of_channel[:, None]
-            points.append(point_whitening(scaled[own], unit, sd))
-        return TableWhitening(groups, tuple(points))
-
     def _expected(self, count: int) -> FloatArray:
         """Return the response of the expansion that its prior mean removes."""
         if self.directions is None:
@@ -483,33 +426,6 @@ class StructureBench:
         moved[:, :4] = self.landing / self.direction_sd[:4]
         shown = self.directions[..., :count]
         return np.asarray(np.einsum("rd,rdct->rct", moved, shown))
-
-    def _whitened(self, rows: FloatArray) -> FloatArray:
-        """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""
-        scaled = self._steadied(rows / self.sigma[:, None, :, None])
-        flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
-        return self._white(rows.shape[3])(flat)
-
-    def _white(self, count: int) -> Callable[[FloatArray], FloatArray]:
-        """Return the whitening of records of so many samples, in place."""
-        if self.directions is None:
-            return _unchanged
-        if self.uncertain:
-            return self._table_whitening(count)
-        found: HitWhitening = self._kept(
-            ("white", count), lambda: whitening_of(_flat(self._scaled(count)))
-        )
-        return found
-
-
-def _flat(rows: FloatArray) -> FloatArray:
-    """Return rows of records, (n_records, n, ...) to (n_records, n, n_rows)."""
-    return rows.reshape(*rows.shape[:2], -1)
-
-
-def _unchanged(rows: FloatArray) -> FloatArray:
-    """Return rows before directions are known."""
-    return rows
 
 
 def _frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:

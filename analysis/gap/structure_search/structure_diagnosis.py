@@ -130,7 +130,7 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
         candidates=ranked_fits(
             bench,
             [outcome.base, *outcome.ranked],
-            lambda f: f.chi2 / bench.blocks.dof,
+            lambda f: f.chi2 * bench.coherence / bench.blocks.dof,
         ),
         gap_before=before,
         gap_after=before if best is base else _gap(on, best),
