@@ -270,6 +270,14 @@ class StructureSettings:
         "effects that are fitted by the drop of their directed tests",
         "four of a prototype with ten effects; the catalogue has twenty-two",
     )
+    strong_sites: int = numerical(
+        2,
+        "effects",
+        "most effects that are fitted because they are nearer to the records when "
+        "strong than the fit without them",
+        "where a spring of 6 to 40 times a bolt holds a point, one at that point is "
+        "nearest",
+    )
     leading_sites: int = numerical(
         2, "sites", "most sites at which one effect is fitted for its directed tests"
     )

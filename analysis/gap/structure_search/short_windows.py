@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Fits of one more effect in the first milliseconds, where records show it in phase."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -109,7 +111,29 @@ def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candid
         if leaders and c.site == leaders[0].site and not few.nonlinear((c,))
         if c not in leaders and c not in chosen
     ]
-    return leaders + place + chosen
+    known = leaders + place + chosen
+    return known + _strong(few, near, [c for c in free if c not in known])
+
+
+def _strong(
+    few: StructureBench, near: Fit, others: Sequence[Candidate]
+) -> list[Candidate]:
+    """Return candidates that are nearer to the records when strong than the fit is.
+
+    Directed tests mislead about a stiff spring or a large mass at a point, which has
+    the most sites; laws and effects that are always tried are left out.
+    """
+    if near.chi2 * few.coherence < STRUCTURE.explaining_chi2 * near.residual.size:
+        return []
+    reached = []
+    for c in others:
+        if few.nonlinear((c,)) or len(c.effect.parameters) > 1:
+            continue
+        starts = _far_starts(few, near, c, _far(c))
+        if starts and (cost := min(s.cost for s in starts)) < near.cost:
+            reached.append((cost, c))
+    reached.sort(key=lambda one: one[0])
+    return [c for _, c in reached[: STRUCTURE.strong_sites]]
 
 
 def _starts(
@@ -118,11 +142,22 @@ def _starts(
     """Return starts of a candidate, best first: along its tests, and far ones."""
     problem = make_problem(few, (*near.candidates, candidate))
     starts = [along(problem, near, d, SHORT) for d in screening.best(candidate, 2)]
-    for tail in (*_far(candidate), *few.hints(near, candidate)):
+    tails = (*_far(candidate), *few.hints(near, candidate))
+    starts += _far_starts(few, near, candidate, tails)
+    return sorted(starts, key=lambda s: s.cost)
+
+
+def _far_starts(
+    few: StructureBench, near: Fit, candidate: Candidate, tails: Sequence[FloatArray]
+) -> list[CandidateFit]:
+    """Return starts at coordinates of a candidate, from the nominal and fitted base."""
+    problem = make_problem(few, (*near.candidates, candidate))
+    starts = []
+    for tail in tails:
         for base in (np.zeros_like(near.base), near.base):
             x = np.concatenate([base, near.x[near.n_base :], tail])
             starts.append(CandidateFit(problem, x, cost_at(problem, x, SHORT)))
-    return sorted(starts, key=lambda s: s.cost)
+    return starts
 
 
 def _far(candidate: Candidate) -> list[FloatArray]:
