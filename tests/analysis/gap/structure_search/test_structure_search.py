@@ -9,7 +9,7 @@ import pytest
 from hit_campaigns import Hidden, write_campaign
 
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
-from jointbench.analysis.gap.model.effect import Candidate
+from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -222,6 +222,27 @@ def candidate(found: StructureOutcome, name: str, number: int = 0) -> Candidate:
 def costly(found: StructureOutcome, cost: float, *candidates: Candidate) -> Fit:
     """Return a fit of effects with a cost."""
     return replace(found.outcome.base, candidates=candidates, cost=cost)
+
+
+def test_a_stiff_spring_is_tried_where_no_directed_test_leads(
+    found: StructureOutcome,
+) -> None:
+    """Five bolts at one point: along its directed test a fit ends at a soft spring."""
+    bench = found.base_bench
+    spring = next(
+        c for c in bench.candidates if c.label == "added_stiffness@point:P1 normal"
+    )
+    held = (Term(spring, np.array([5.6])),)
+    response = bench.response(found.outcome.base.base, held, None)
+    hits = replace(bench.campaign.hits, response=response)
+    bench = make_structure_bench(replace(bench.campaign, hits=hits))
+    few = bench.chosen(one_of_each(hits))
+    base = np.zeros(few.base_sd.size)
+    few = few.at(base, (), few.landing, few.table_floor)
+    near = minimise(make_problem(few, ()), base, SHORT, iterations=8)
+    fits = carried(few, near, UNTESTED, lambda line: None)
+    assert fits[0].candidates == (spring,)
+    assert fits[0].x[-1] == pytest.approx(5.6, rel=1e-2)
 
 
 def test_every_law_of_the_leading_family_is_fitted_to_whole_records(
