@@ -248,11 +248,7 @@ class StructureBench:
         fine = resolution.oversampling > FULL.oversampling
         model = self.model(base, terms, resolution.window, fine=fine)
         modelled = model.response(landing_weights(self.landing))
-        count = modelled.shape[2]
-        r = modelled - self.campaign.hits.response[:, :, :count]
-        if self.directions is not None:
-            r -= self._expected(count)
-        return self.whitening(r[:, None]).ravel()
+        return self.whitening(self.off(modelled)[:, None]).ravel()
 
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
@@ -336,10 +332,8 @@ class StructureBench:
         Returns:
             Landing, shape (n_records, 4), and relative gain, shape (n_records,).
         """
-        modelled = self.response(base, terms, window)
-        count = modelled.shape[2]
-        r = modelled - self.campaign.hits.response[:, :, :count] - self._expected(count)
-        found = self.whitening.found(r) * self.direction_sd
+        off = self.off(self.response(base, terms, window))
+        found = self.whitening.found(off) * self.direction_sd
         return found[:, :4], found[:, 4]
 
     @property
@@ -384,6 +378,24 @@ class StructureBench:
             kept={},
         )
 
+    def off(self, modelled: FloatArray) -> FloatArray:
+        """Return model minus measurement [m/s^2], about where hits landed.
+
+        Of what the expansion adds to a response, the prior mean of its directions is
+        left out.
+
+        Args:
+            modelled: responses, shape (n_records, n_channels, count).
+        """
+        count = modelled.shape[2]
+        r = modelled - self.campaign.hits.response[:, :, :count]
+        if self.directions is None:
+            return r
+        moved = np.zeros((len(self.landing), 5))
+        moved[:, :4] = self.landing / self.direction_sd[:4]
+        r -= np.einsum("rd,rdct->rct", moved, self.directions[..., :count])
+        return r
+
     def difference(self, base: FloatArray, terms: Sequence[Term]) -> FloatArray:
         """Return model minus measurement, shape of the response."""
         return self.response(base, terms, None) - self.campaign.hits.response
@@ -417,15 +429,6 @@ class StructureBench:
         )
         self.kept[place] = key, found
         return found
-
-    def _expected(self, count: int) -> FloatArray:
-        """Return the response of the expansion that its prior mean removes."""
-        if self.directions is None:
-            raise ValueError("directions are computed by `at` first")
-        moved = np.zeros((len(self.landing), 5))
-        moved[:, :4] = self.landing / self.direction_sd[:4]
-        shown = self.directions[..., :count]
-        return np.asarray(np.einsum("rd,rdct->rct", moved, shown))
 
 
 def _frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:

@@ -149,8 +149,33 @@ def point_whitening(
     root = np.sqrt(values)
     basis = (vectors / root).T @ flat
     taken = np.stack([_taken((one / largest)[:, None] * vectors * root) for one in sd])
+    return _whitening(directions, basis, taken)
+
+
+def free_whitening(directions: FloatArray, errors: FloatArray) -> PointWhitening:
+    """Return the whitening of the records of a point for errors of any size.
+
+    Args:
+        directions: as in `point_whitening`.
+        errors: responses of unit error of the table, over the part of sigma that
+            depends on the record, shape (n_records, n_errors, n_samples).
+    """
+    flat = errors.transpose(1, 0, 2).reshape(errors.shape[1], -1)
+    size = np.linalg.norm(flat, axis=1)
+    flat = flat[size > 0.0] / size[size > 0.0, None]
+    values, vectors = np.linalg.eigh(flat @ flat.T)
+    kept = values > STRUCTURE.free_rank * values[-1]
+    basis = (vectors[:, kept] / np.sqrt(values[kept])).T @ flat
+    taken = np.tile(np.eye(len(basis)), (directions.shape[2], 1, 1))
+    return _whitening(directions, basis, taken)
+
+
+def _whitening(
+    directions: FloatArray, basis: FloatArray, taken: FloatArray
+) -> PointWhitening:
+    """Return the whitening with a basis of the errors, shape (n, n_rows)."""
     records, count, _, length = directions.shape
-    basis = basis.reshape(len(root), records, length).transpose(1, 0, 2)
+    basis = basis.reshape(len(basis), records, length).transpose(1, 0, 2)
     basis = np.ascontiguousarray(basis)
     within = np.stack([d @ q.T for d, q in zip(directions, basis, strict=True)])
     twice = 2.0 * taken - taken @ taken

@@ -135,6 +135,12 @@ class StructureSettings:
         "floor as a multiple of the stated sd of the shapes of the modal table",
         "of the errors of a table those of first order are whitened",
     )
+    free_rank: float = numerical(
+        1e-8,
+        "of the largest",
+        "eigenvalue below which errors of residues depend on each other",
+        "square root of rounding",
+    )
     tuned_band: float = numerical(
         1.3,
         "of the band",

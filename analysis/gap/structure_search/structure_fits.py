@@ -23,6 +23,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
 from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import Descent, cost_at, descend, minimise
+from jointbench.analysis.gap.structure_bench.beyond_table import beyond_table
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
@@ -325,6 +326,8 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         landing, _ = bench.landed(fit.base, fit.terms)
         common, error = STRUCTURE.mark_sd, policy.floor_prior_limit
         reason = mark_missed(bench.campaign, landing, common, error)
+        if bench.uncertain and not (reason or fit.candidates):
+            reason = _no_linear_structure(bench, fit)
     return Acceptance(
         passed=not reason,
         reason=reason,
@@ -335,3 +338,12 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         unexplained=bool(reason),
         left=None,
     )
+
+
+def _no_linear_structure(bench: StructureBench, fit: Fit) -> str:
+    """Return why no modal table explains what a fit leaves, empty if one may."""
+    level, chi2 = beyond_table(bench, fit)
+    if chi2 < bench.policy.floor_chi2:
+        return ""
+    share = STRUCTURE.table_floor * np.sqrt(chi2)
+    return f"at {level}, {share:.2%} of the peak is due to no error of the modal table"

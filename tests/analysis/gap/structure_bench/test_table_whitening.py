@@ -8,6 +8,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_bench.table_whitening import (
     PointWhitening,
     TableWhitening,
+    free_whitening,
     point_whitening,
 )
 
@@ -82,3 +83,32 @@ def test_points_are_whitened_apart(drawn: tuple[PointWhitening, FloatArray]) -> 
     np.testing.assert_allclose(
         whole.found(residual)[first], point.found(residual[first])
     )
+
+
+def test_errors_of_any_size_are_taken_out_whole() -> None:
+    """What is left has the chi2 of directions beside what no error explains."""
+    rng = np.random.default_rng(501)
+    own = rng.normal(size=(RECORDS, DIRECTIONS, CHANNELS, SAMPLES))
+    errors = rng.normal(size=(RECORDS, ERRORS, SAMPLES))
+    errors[:, -1] = 3.0 * errors[:, 0]  # a response that two errors make
+    size = RECORDS * CHANNELS * SAMPLES
+    spanned, moved = [], []
+    for c in range(CHANNELS):
+        for k in range(ERRORS - 1):
+            one = np.zeros((RECORDS, CHANNELS, SAMPLES))
+            one[:, c] = errors[:, k]
+            spanned.append(one.ravel())
+    for r in range(RECORDS):
+        for d in range(DIRECTIONS):
+            one = np.zeros((RECORDS, CHANNELS, SAMPLES))
+            one[r] = own[r, d]
+            moved.append(one.ravel())
+    q = np.linalg.qr(np.transpose(spanned))[0]
+    left = np.eye(size) - q @ q.T
+    w = left @ np.transpose(moved)
+    rows = rng.normal(size=(RECORDS, 1, CHANNELS, SAMPLES))
+    y = left @ rows[:, 0].ravel()
+    expected = y @ np.linalg.solve(np.eye(size) + w @ w.T, y)
+    rows += 1e4 * errors[:, None, None, 1]
+    free_whitening(own, errors).whiten(rows)
+    assert np.sum(rows**2) == pytest.approx(expected, rel=1e-6)
