@@ -23,7 +23,7 @@ from jointbench.analysis.gap.structure_response.structure_settings import STRUCT
 def beyond_table(bench: StructureBench, fit: Fit) -> tuple[str, float]:
     """Return what no error of the table explains, at the level where it is most.
 
-    Channels whose noise is larger than that floor are not counted.
+    Channels whose noise is above that floor are not counted.
 
     Args:
         bench: with an uncertain table, on which the fit was found.
@@ -31,7 +31,7 @@ def beyond_table(bench: StructureBench, fit: Fit) -> tuple[str, float]:
 
     Returns:
         The level in words, and there chi2 over its degrees of freedom, with the floor
-        of exact tables; 0 where nothing is louder than its noise.
+        of exact tables; 0 where all noise is above it.
     """
     hits = bench.campaign.hits
     if bench.errors is None or bench.directions is None:

@@ -12,12 +12,11 @@ from jointbench.analysis.gap.model.effect import Candidate, Effect, Site, Term
 from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 Change = Callable[[JointState, HitCampaign, Site, FloatArray], JointState]
 """Adds an effect at a site with its values [SI] to a state."""
 Sites = Callable[[HitCampaign], tuple[Site, ...]]
-_APART = 1.5
-"""Ratio of starts of a strong effect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +49,7 @@ class StructureEffect:
 
 
 def far_starts(first: float, last: float) -> tuple[float, ...]:
-    """Return starts of a strong effect, each half as large again as the one before.
+    """Return starts of a strong effect, each larger than the one before by a factor.
 
     From a stiff spring or a soft joint of less than two thirds or more than twice its
     value, fits in the first milliseconds ended at a weak one.
@@ -59,8 +58,9 @@ def far_starts(first: float, last: float) -> tuple[float, ...]:
         first: smallest start.
         last: no start is larger.
     """
-    count = 1 + int(np.log(last / first) / np.log(_APART))
-    return tuple(first * _APART**k for k in range(count))
+    ratio = STRUCTURE.far_ratio
+    count = 1 + int(np.log(last / first) / np.log(ratio))
+    return tuple(first * ratio**k for k in range(count))
 
 
 def one_parameter(

@@ -276,6 +276,13 @@ class StructureSettings:
         "effects that are fitted by the drop of their directed tests",
         "four of a prototype with ten effects; the catalogue has twenty-two",
     )
+    far_ratio: float = numerical(
+        1.5,
+        "-",
+        "ratio of starts of a strong effect",
+        "fits in 6 ms reached springs, joints and clearances from two thirds to one "
+        "and a half times their value (seeds 514528, 514710, 493221, 515014)",
+    )
     strong_sites: int = numerical(
         2,
         "effects",
