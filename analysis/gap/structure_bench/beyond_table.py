@@ -23,15 +23,15 @@ from jointbench.analysis.gap.structure_response.structure_settings import STRUCT
 def beyond_table(bench: StructureBench, fit: Fit) -> tuple[str, float]:
     """Return what no error of the table explains, at the level where it is most.
 
-    Channels whose noise is above that floor are not counted.
+    Channels whose noise is above the floor of exact tables are not counted.
 
     Args:
         bench: with an uncertain table, on which the fit was found.
         fit: to whole records.
 
     Returns:
-        The level in words, and there chi2 over its degrees of freedom, with the floor
-        of exact tables; 0 where all noise is above it.
+        The level in words, and there chi2 over its degrees of freedom, with that
+        floor; 0 where all noise is above it.
     """
     hits = bench.campaign.hits
     if bench.errors is None or bench.directions is None:
