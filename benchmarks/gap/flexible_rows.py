@@ -6,7 +6,8 @@ Usage: python benchmarks/gap/flexible_rows.py FOLDER [--minutes 60] [--rows ROW 
 
 Each campaign is made, examined by the command and appended to FOLDER/runs.jsonl; a
 later call continues where the last one ended. Seeds whose effects are to be counted
-apart are skipped. `flexible_page.py` writes the page.
+apart are skipped, and so are seeds of which no draw stays finite. `flexible_page.py`
+writes the page.
 """
 
 import argparse
@@ -19,6 +20,8 @@ from typing import Any
 
 from flexible_campaigns import hidden_names, make_one
 from flexible_score import run_one
+
+from jointbench.acquisition.basics.errors import UsageError
 
 ROWS = {
     "null-exact": ("null", "exact", 481_210),
@@ -74,7 +77,12 @@ def grow(folder: Path, turns: Sequence[str], apart: frozenset[str], end: float) 
             seed = next(s for s in following[row] if (row, s) not in done)
             if time.time() > end:
                 return
-            run = _one(folder, row, seed)
+            done.add((row, seed))
+            try:
+                run = _one(folder, row, seed)
+            except UsageError as error:
+                print(row, error, flush=True)
+                continue
             with runs.open("a", encoding="utf-8") as out:
                 out.write(json.dumps(run) + "\n")
             named = [e["name"] for e in run["found"]["effects"] or ()]

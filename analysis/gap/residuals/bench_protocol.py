@@ -130,7 +130,8 @@ class SlopedBench(Protocol):
     ) -> FloatArray:
         """Return d residual / d base, shape (n_rows, n_base).
 
-        A bench may add columns by the coordinates of the effects, all of them.
+        A bench may add columns by the coordinates of the effects, all of them; NaN in
+        those that it does not know.
         """
         ...
 

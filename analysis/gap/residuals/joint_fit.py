@@ -47,7 +47,7 @@ class FitProblem:
         """Return the slopes of the residual by the base, shape (n_rows, n_base).
 
         None if the bench has none of its own. A bench may add columns by the
-        coordinates of the effects, all of them.
+        coordinates of the effects, all of them; NaN in those that it does not know.
         """
         if not isinstance(self.bench, SlopedBench):
             return None

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
@@ -36,10 +36,8 @@ def jacobian_of(
         residual: at x, shape (n_rows,).
         resolution: of the residual.
     """
-    known = problem.base_slopes(x, resolution)
-    if known is not None and known.shape[1] == x.size:
-        return known
-    columns = np.empty((x.size, residual.size))
+    shared = x.size - problem.own
+    columns, missing = _with_room(problem.base_slopes(x, resolution), x, residual)
     steps = _steps_of(problem, x)
 
     def difference(i: int) -> None:
@@ -49,12 +47,8 @@ def jacobian_of(
         columns[i] -= residual
         columns[i] /= steps[i]
 
-    shared = x.size - problem.own
-    first = 0 if known is None else known.shape[1]
-    if known is not None:
-        columns[:first] = known.T
-        del known
-    each(lambda k: difference(first + k), shared - first)
+    by_difference = missing[missing < shared]
+    each(lambda k: difference(int(by_difference[k])), by_difference.size)
     if problem.own:
         moved = x.copy()
         moved[shared:] += steps[shared:]
@@ -64,6 +58,42 @@ def jacobian_of(
         for i, rows in enumerate(change):
             columns[shared + i].reshape(problem.own, -1)[i] = rows
     return columns.T
+
+
+def _with_room(
+    known: FloatArray | None, x: FloatArray, residual: FloatArray
+) -> tuple[FloatArray, IntArray]:
+    """Return columns for all coordinates, and which of them are not known yet.
+
+    Args:
+        known: slopes by the first of them, or by all with NaN, shape (n_rows, n).
+        x: coordinates, shape (n,).
+        residual: at x, shape (n_rows,).
+    """
+    if known is None:
+        return np.empty((x.size, residual.size)), np.arange(x.size)
+    count = known.shape[1]
+    if count == x.size:
+        columns = known.T
+        return columns, np.flatnonzero(np.isnan(columns.sum(axis=1)))
+    columns = np.empty((x.size, residual.size))
+    columns[:count] = known.T
+    return columns, np.arange(count, x.size)
+
+
+class SlopesOnHand:
+    """Slopes that one fit leaves to the next, which alone keeps them.
+
+    They are the largest array of a fit, and are dropped when others take their place.
+    """
+
+    def __init__(self, slopes: FloatArray) -> None:
+        """Hold the slopes, shape (n_rows, n)."""
+        self._held: list[FloatArray] = [slopes]
+
+    def taken(self) -> FloatArray:
+        """Return the slopes and forget them."""
+        return self._held.pop()
 
 
 _NO_SLOPES = np.zeros((0, 0))
@@ -134,7 +164,7 @@ def descend(
     problem: FitProblem,
     start: FloatArray,
     how: Descent,
-    known: FloatArray | None = None,
+    known: SlopesOnHand | None = None,
 ) -> Fit:
     """Minimise the cost from one start.
 
@@ -142,16 +172,15 @@ def descend(
         problem: least-squares problem.
         start: coordinates, shape (n,).
         how: how far.
-        known: slopes of nearly the same problem there, shape (n_rows, n), kept until a
-            step fails. They change in place, since a second set would double the
-            memory. None to compute them.
+        known: slopes of nearly the same problem there, kept until a step fails; they
+            change in place. None to compute them.
     """
     x = np.clip(start, problem.lower, problem.upper)
     r, cost = _looked_at(problem, x, how.resolution)
     if not np.isfinite(cost):
         return _pruned(problem, x, r)
     damping, age = SEARCH.least_damping, 0 if known is None else 1
-    j = how.slopes(problem, x, r) if known is None else known
+    j = how.slopes(problem, x, r) if known is None else known.taken()
     for k in range(how.iterations):
         ended = max(
             how.least_drop,

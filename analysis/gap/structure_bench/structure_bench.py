@@ -255,8 +255,8 @@ class StructureBench:
     ) -> FloatArray:
         """Return the slopes of the residual by the base, shape (n_rows, n).
 
-        If all effects are nonlinear laws, columns by their coordinates follow: the
-        linear response does not change with them.
+        Columns by the coordinates of the effects follow: if all of these are nonlinear
+        laws, with which the linear response does not change, their slopes, else NaN.
         """
         weights = landing_weights(self.landing)
         model = self.model(base, terms, resolution.window)
@@ -268,12 +268,14 @@ class StructureBench:
             if self.nonlinear([t.candidate for t in terms], every=True):
                 added = laws.by_terms()
         n, records = self.layout.sd.size, len(weights)
-        columns = np.empty((n + len(added), records, *model.shape))
+        whole = n + sum(t.coordinates.size for t in terms)
+        columns = np.full((whole, records, *model.shape), np.nan)
         for k, rows in enumerate(model.slopes(weights, self.layout, changes)):
             np.divide(rows, self.sigma[:, :, None], out=columns[k])
         for k, forces in enumerate(added):
             columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
-        self.whitening.in_place(columns.transpose(1, 0, 2, 3))
+        known = columns[: n + len(added)]
+        self.whitening.in_place(known.transpose(1, 0, 2, 3))
         return columns.reshape(len(columns), -1).T
 
     def refine(
@@ -306,7 +308,7 @@ class StructureBench:
             floor: error of the model, as a share of the peak [-].
             window: to which the bench is fitted, or shorter ones [s]; None for any.
         """
-        moved = replace(self, landing=landing, kept=_frames_of(self.kept))
+        moved = replace(self, landing=landing, kept=frames_of(self.kept))
         model = moved.model(base, terms, window)
         rows = direction_rows(model, landing, self.direction_sd)
         peak = np.abs(self.campaign.hits.response).max(axis=2)
@@ -356,7 +358,7 @@ class StructureBench:
 
         Closed responses and whitenings of all records are half a gigabyte.
         """
-        return replace(self, kept=_frames_of(self.kept))
+        return replace(self, kept=frames_of(self.kept))
 
     def chosen(self, records: IntArray) -> "StructureBench":
         """Return the bench of some of its records."""
@@ -431,6 +433,6 @@ class StructureBench:
         return found
 
 
-def _frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:
-    """Return what does not depend on where hits landed."""
+def frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:
+    """Return what depends neither on where hits landed nor on the base coordinates."""
     return {key: value for key, value in kept.items() if key[0] == "frame"}

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Base coordinates of bolted bodies: their order, names and priors."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.analysis.gap.structure_response.jointed_bodies import (
     DIRECTIONS,
     JointedBodies,
@@ -26,7 +26,9 @@ class BaseName(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BaseLayout:
-    """Order of the base coordinates; each is the log of a value over its nominal one.
+    """Order of the base coordinates: logs of values over their nominal ones.
+
+    Couplings of closed modes, which are nominally none, are coordinates themselves.
 
     Attributes:
         names: of the coordinates.
@@ -53,6 +55,14 @@ class BaseLayout:
     def at(self, name: str) -> int:
         """Return the index of a coordinate."""
         return self.names.index(name)
+
+    @property
+    def couplings(self) -> IntArray:
+        """Indices of the couplings of closed modes."""
+        if self.tuned is None:
+            return np.zeros(0, np.int64)
+        names = self.tuned.names[self.tuned.omega.size :]
+        return np.array([self.at(name) for name in names], dtype=np.int64)
 
 
 def stiffness_name(direction: int) -> str:
@@ -114,6 +124,21 @@ def base_layout(
     rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
     names, sd, units = zip(*rows, strict=True)
     return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count), tuned)
+
+
+def with_tuned(layout: BaseLayout, tuned: TunedModes, sd: FloatArray) -> BaseLayout:
+    """Return a layout with as many other closed modes in the place of its own.
+
+    Args:
+        layout: with tuned modes.
+        tuned: the other ones.
+        sd: of all coordinates, shape (n_base,).
+    """
+    if layout.tuned is None:
+        raise ValueError("the layout has no tuned modes")
+    new = dict(zip(layout.tuned.names, tuned.names, strict=True))
+    names = tuple(new.get(name, name) for name in layout.names)
+    return replace(layout, names=names, sd=sd, tuned=tuned)
 
 
 def _contrasts(count: int) -> FloatArray:

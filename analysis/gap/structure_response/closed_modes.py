@@ -121,7 +121,7 @@ def mass_damping_stiffness(
     k += (state.foot[0] * np.repeat(state.foot_factor, 3) * feet.T) @ feet
     c += state.foot[1] * feet.T @ feet
     if state.tuned is not None:
-        k += (state.tuned.stiffness * state.tuned.rows.T) @ state.tuned.rows
+        k += state.tuned.rows.T @ state.tuned.stiffness @ state.tuned.rows
     for one in state.attached:
         # An oscillator above the band is a mass; below it, its spring holds the place.
         rows = one.rows(bodies)

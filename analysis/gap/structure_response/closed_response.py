@@ -182,17 +182,26 @@ def _added_rows(bodies: JointedBodies, state: JointState) -> list[FloatArray]:
     return [*(a.rows(bodies) for a in state.attached), *tuned]
 
 
-def _added_stiffness(
-    bodies: JointedBodies, state: JointState, s: ComplexArray
+def _added_forces(
+    bodies: JointedBodies, state: JointState, s: ComplexArray, motion: ComplexArray
 ) -> ComplexArray:
-    """Return the dynamic stiffness of each of these rows, shape (n_lines, n)."""
-    found = [
-        np.repeat(dynamic_stiffness(a, s)[:, None], len(a.rows(bodies)), axis=1)
-        for a in state.attached
-    ]
+    """Return the forces of what is added at motions of its rows, of their shape.
+
+    Args:
+        bodies: places and rows.
+        state: with what is added.
+        s: Laplace variable, shape (n_lines,).
+        motion: of the rows, shape (n_lines, n, n_columns).
+    """
+    found = motion.copy()
+    at = 0
+    for one in state.attached:
+        own = slice(at, at + len(one.rows(bodies)))
+        found[:, own] *= dynamic_stiffness(one, s)[:, None, None]
+        at = own.stop
     if state.tuned is not None:
-        found.append(np.tile(state.tuned.stiffness, (len(s), 1)))
-    return np.concatenate(found, axis=1)
+        found[:, at:] = state.tuned.stiffness @ motion[:, at:]
+    return found
 
 
 def _forces_by_column(
@@ -208,10 +217,10 @@ def _forces_by_column(
         s: Laplace variable, shape (n_lines,).
         h: response without it, shape (n_lines, n_rows, n_columns).
     """
-    z = _added_stiffness(bodies, state, s)[:, :, None]
-    count = z.shape[1]
-    inner = np.eye(count) + z * h[:, -count:, -count:]
-    return _solved(inner, z * h[:, -count:, :-count])
+    count = sum(len(rows) for rows in _added_rows(bodies, state))
+    forces = _added_forces(bodies, state, s, h[:, -count:])
+    inner = np.eye(count) + forces[:, :, -count:]
+    return _solved(inner, forces[:, :, :-count])
 
 
 def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
@@ -332,12 +341,16 @@ def _tuned_slopes(
     by_row = (ends.rows * d[:, None]) @ modes.T
     by_column = (modes * d[:, None]) @ ends.columns
 
-    def across(k: int, slope: float) -> ComplexArray:
-        return np.asarray(-slope * by_row[:, :, [k]] * by_column[:, [k]])
+    def across(i: int, j: int, slope: float) -> ComplexArray:
+        found = -slope * by_row[:, :, [i]] * by_column[:, [j]]
+        if i != j:
+            found -= slope * by_row[:, :, [j]] * by_column[:, [i]]
+        return np.asarray(found)
 
+    tuned = zip(layout.tuned.names, state.tuned.ends, state.tuned.slope, strict=True)
     return {
-        name: partial(across, k, float(state.tuned.slope[k]))
-        for k, name in enumerate(layout.tuned.names)
+        name: partial(across, int(i), int(j), float(slope))
+        for name, (i, j), slope in tuned
     }
 
 

@@ -25,6 +25,7 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import (
     NominalBench,
 )
 from jointbench.analysis.gap.structure_response.port_laws import PortLaws
+from jointbench.analysis.gap.structure_response.tuned_modes import TunedStiffness
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,22 +67,6 @@ class CableResonance:
     channel: int
     period: float
     damping: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TunedStiffness:
-    """Modal stiffness beyond that of the model, by which closed modes are tuned.
-
-    Attributes:
-        rows: modal force on the free modes by each, shape (n_tuned, n_modes).
-        stiffness: of each [rad^2/s^2], shape (n_tuned,).
-        slope: of the stiffness by the logarithm of the frequency [rad^2/s^2], shape
-            (n_tuned,).
-    """
-
-    rows: FloatArray
-    stiffness: FloatArray
-    slope: FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,10 +166,8 @@ def state_of(
     channels = len(bodies.channels)
     tuned = None
     if layout.tuned is not None:
-        square = np.array([factor[name] for name in layout.tuned.names]) ** 2
-        own = layout.tuned.omega**2
-        slope = 2.0 * own * square
-        tuned = TunedStiffness(layout.tuned.rows, own * (square - 1.0), slope)
+        own = [layout.at(name) for name in layout.tuned.names]
+        tuned = layout.tuned.stiffness_at(base[own])
     contrast = base[layout.sd.size - layout.contrasts.shape[1] :]
     return JointState(
         modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
@@ -201,10 +184,10 @@ def state_of(
     )
 
 
-def nominal_values(
-    bodies: JointedBodies, nominal: NominalBench, layout: BaseLayout
-) -> FloatArray:
-    """Return the value of each coordinate at 0, in its unit."""
+def base_values(
+    bodies: JointedBodies, nominal: NominalBench, layout: BaseLayout, base: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the value of each coordinate in its unit, and its slope, (n_base,)."""
     known: dict[str, float] = {
         BaseName.TANGENTIAL_DAMPING: float(nominal.damping[0]),
         BaseName.NORMAL_DAMPING: float(nominal.damping[NORMAL]),
@@ -213,4 +196,7 @@ def nominal_values(
     }
     known |= {loss_name(b): nominal.loss[0] for b in bodies.bodies}
     known |= {stiffness_name(d): float(nominal.stiffness[d]) for d in layout.compliant}
-    return np.array([known.get(name, 1.0) for name in layout.names])
+    values = np.array([known.get(name, 1.0) for name in layout.names]) * np.exp(base)
+    slopes = values.copy()
+    values[layout.couplings], slopes[layout.couplings] = base[layout.couplings], 1.0
+    return values, slopes

@@ -155,6 +155,25 @@ class StructureSettings:
         "frequency is no coordinate",
         "bodies that move as rigid ones on their feet: 1e-4",
     )
+    close_mixing: float = numerical(
+        0.1,
+        "-",
+        "sd of the share of a closed mode in another one above which their coupling "
+        "is a coordinate where the modal table is uncertain",
+        "what first order leaves is half of its square, 0.5 % of the residues",
+    )
+    least_pairs: int = numerical(
+        2,
+        "couplings",
+        "fewest such coordinates, for the modes that mix most",
+        "an effect brings other modes together than the nominal joint",
+    )
+    least_tuning: float = numerical(
+        1e-9,
+        "-",
+        "least sd of a frequency or coupling of closed modes",
+        "errors of a table reach no rigid motion: far below the width of any mode",
+    )
     open_frequency: float = numerical(
         1e-3,
         "-",

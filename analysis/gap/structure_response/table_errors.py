@@ -8,9 +8,11 @@ an error of a frequency one on it. Perturbation theory carries these elements ov
 the modes of the closed structure (Fox and Kapoor, AIAA J. 6 (1968), eqs. 3 to 6).
 """
 
+from dataclasses import replace
+
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.analysis.gap.structure_response.closed_modes import (
     RealModes,
     mass_damping_stiffness,
@@ -35,23 +37,96 @@ def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:
     """
     if not any(campaign.nominal.table_sd):
         return None
-    bodies = campaign.bodies
-    modes = real_modes(bodies, state)
+    modes = real_modes(campaign.bodies, state)
+    sd = _frequency_sd(campaign, campaign.bodies, modes)
     highest = 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
-    near = modes.omega > STRUCTURE.rigid_share * highest
-    near &= modes.omega < highest
+    near = np.flatnonzero(_open(campaign, modes, sd) & (modes.omega < highest))
+    mixing = np.triu(mixing_of(campaign, campaign.bodies, modes)[np.ix_(near, near)])
+    count = int(np.sum(mixing > STRUCTURE.close_mixing))
+    count = max(count, STRUCTURE.least_pairs)
+    return _tuned(campaign, state, modes, near, count)
+
+
+def tuned_again(
+    campaign: HitCampaign, state: JointState, like: TunedModes
+) -> tuple[TunedModes, FloatArray] | None:
+    """Return as many of these modes, the lowest, at a state that is tuned already.
+
+    Where a joint is so soft that errors of the table shift fewer, others follow.
+
+    Args:
+        campaign: hits, modes and nominal parameters.
+        state: with tuned modes of another state.
+        like: these.
+
+    Returns:
+        The modes without what tunes the state, and the coordinates by which it is;
+        None if nothing tunes it, or there are not as many.
+    """
+    count = like.omega.size
+    bare = replace(state, tuned=None)
+    modes = real_modes(state.bodies_of(campaign.bodies), bare)
+    if state.tuned is None or modes.omega.size < count:
+        return None
+    sd = _frequency_sd(campaign, state.bodies_of(campaign.bodies), modes)
+    unshifted = ~_open(campaign, modes, sd)
+    found = np.sort(np.argsort(unshifted, kind="stable")[:count])
+    tuned = _tuned(campaign, bare, modes, found, len(like.pairs))
+    across = state.tuned.rows @ modes.shapes[:, found]
+    return tuned, tuned.coordinates_of(across.T @ state.tuned.stiffness @ across)
+
+
+def _open(campaign: HitCampaign, modes: RealModes, sd: FloatArray) -> BoolArray:
+    """Return which modes errors of the table shift during a record, shape (n,)."""
+    lowest = 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
+    elastic = modes.omega > STRUCTURE.rigid_share * lowest
+    duration = campaign.hits.response.shape[2] / campaign.hits.sample_rate
+    return np.asarray(elastic & (sd * modes.omega * duration > STRUCTURE.least_phase))
+
+
+def _tuned(
+    campaign: HitCampaign,
+    state: JointState,
+    modes: RealModes,
+    chosen: IntArray,
+    pairs: int,
+) -> TunedModes:
+    """Return some of the modes, those couplings that mix them most with a coordinate.
+
+    Args:
+        campaign: with the uncertainty of the table.
+        state: which is not tuned.
+        modes: of that state.
+        chosen: some of them, shape (n_tuned,).
+        pairs: number of couplings.
+    """
+    bodies = state.bodies_of(campaign.bodies)
     mass, _, _ = mass_damping_stiffness(bodies, state, 1.0)
+    rows = (mass @ modes.shapes[:, chosen]).T
+    omega = modes.omega[chosen]
+    both = np.ix_(chosen, chosen)
+    first, second = np.triu_indices(chosen.size, 1)
+    mixing = mixing_of(campaign, bodies, modes)[both][first, second]
+    most = np.sort(np.argsort(-mixing)[:pairs])
+    first, second = first[most], second[most]
+    coupling = _coupling(campaign, bodies, modes)[both][first, second]
+    between = np.sqrt(coupling) / (2.0 * omega[first] * omega[second])
+    alone = _frequency_sd(campaign, bodies, modes)[chosen]
+    sd = np.maximum(np.concatenate([alone, between]), STRUCTURE.least_tuning)
+    return TunedModes(rows, omega, np.stack([first, second], axis=1), sd)
+
+
+def _frequency_sd(
+    campaign: HitCampaign, bodies: JointedBodies, modes: RealModes
+) -> FloatArray:
+    """Return the sd of the logarithms of closed frequencies, shape (n,)."""
     coupling = _coupling(campaign, bodies, modes)
     # Of second order: joints of rigid bodies have little of the first.
     apart = np.abs(modes.omega[:, None] ** 2 - modes.omega**2)
     beside = coupling / np.hypot(apart, np.sqrt(coupling) + 1.0)
     np.fill_diagonal(beside, 0.0)
     sd = np.hypot(np.sqrt(np.diag(coupling)), beside.sum(axis=1))
-    sd /= 2.0 * np.where(near, modes.omega, 1.0) ** 2
-    duration = campaign.hits.response.shape[2] / campaign.hits.sample_rate
-    near &= sd * modes.omega * duration > STRUCTURE.least_phase
-    rows = (mass @ modes.shapes[:, near]).T
-    return TunedModes(rows, modes.omega[near], sd[near])
+    return np.asarray(sd / (2.0 * np.maximum(modes.omega, 1.0) ** 2))
 
 
 def mixing_of(

@@ -2,7 +2,7 @@
 """Diagnosis of hits on bolted bodies: verdict and evidence."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,16 +14,11 @@ from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdic
 from jointbench.analysis.gap.judgement.fit_summaries import (
     deviations_from_priors,
     labels_of_fit,
-    largest_deviation,
     ranked_fits,
 )
-from jointbench.analysis.gap.judgement.held_out import hold_out_by_steps
-from jointbench.analysis.gap.judgement.stated_covariance import stated_covariance
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
-    Estimate,
     Finding,
-    Gap,
 )
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
@@ -41,7 +36,7 @@ from jointbench.analysis.gap.structure_response.hit_campaign import (
     HitCampaign,
     RejectedHit,
 )
-from jointbench.analysis.gap.structure_response.joint_state import nominal_values
+from jointbench.analysis.gap.structure_search.fit_summary import fit_summary
 from jointbench.analysis.gap.structure_search.structure_search import (
     StructureOutcome,
     search_structure,
@@ -123,7 +118,8 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
         shown = outcome.level
     base, accepted = outcome.base, outcome.acceptance.passed
     best, on = (outcome.best, bench) if accepted else (base, found.base_bench)
-    before = _gap(found.base_bench, base)
+    before = found.before
+    after = before if best is base else fit_summary(on, best)
     return Diagnosis(
         verdict=verdict.finding,
         effects=effects_of(outcome, bench, shown),
@@ -132,10 +128,10 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
             [outcome.base, *outcome.ranked],
             lambda f: f.chi2 * bench.coherence / bench.blocks.dof,
         ),
-        gap_before=before,
-        gap_after=before if best is base else _gap(on, best),
+        gap_before=before.gap,
+        gap_after=after.gap,
         prior_deviations=deviations_from_priors(bench.base_names, base, best),
-        base=_base_estimates(bench, best),
+        base=after.estimates,
         noise={
             "sigma_min": float(on.sigma.min()),
             "sigma_max": float(on.sigma.max()),
@@ -175,24 +171,3 @@ def _verdict(outcome: SearchOutcome, bench: StructureBench) -> DiagnosisVerdict:
         return DiagnosisVerdict(Finding.UNKNOWN, reason, OTHER_POINTS)
     reason = f"{names}: the difference of their scores is not significant"
     return DiagnosisVerdict(Finding.AMBIGUOUS, reason, OTHER_POINTS)
-
-
-def _gap(bench: StructureBench, fit: Fit) -> Gap:
-    held = hold_out_by_steps(fit, bench.blocks)
-    # As in the verdict, in units of the floor.
-    held = replace(held, dof=held.dof / bench.coherence)
-    deviation = largest_deviation(fit)
-    views = bench.views(fit)
-    return Gap(held.gap, held.chi2_per_dof, deviation, views, held.words)
-
-
-def _base_estimates(bench: StructureBench, fit: Fit) -> tuple[Estimate, ...]:
-    variance = np.diag(stated_covariance(fit, bench.blocks))[: fit.n_base]
-    sd = np.sqrt(np.maximum(variance, 0.0))
-    campaign, layout = bench.campaign, bench.layout
-    nominal = nominal_values(campaign.bodies, campaign.nominal, layout)
-    values = nominal * np.exp(fit.base)
-    return tuple(
-        Estimate(name, float(v), float(v * s), unit)
-        for name, v, s, unit in zip(layout.names, values, sd, layout.units, strict=True)
-    )

@@ -22,7 +22,13 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
-from jointbench.analysis.gap.search.descent import Descent, cost_at, descend, minimise
+from jointbench.analysis.gap.search.descent import (
+    Descent,
+    SlopesOnHand,
+    cost_at,
+    descend,
+    minimise,
+)
 from jointbench.analysis.gap.structure_bench.beyond_table import beyond_table
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
@@ -44,7 +50,7 @@ def approached(
         candidates: effects.
     """
     few, fit = in_windows(few, start, candidates)
-    return in_full(few, fit)
+    return in_full(few, fit.x, candidates)
 
 
 def in_windows(
@@ -71,9 +77,11 @@ def in_windows(
     return few, fit
 
 
-def in_full(few: StructureBench, fit: Fit) -> tuple[StructureBench, Fit]:
+def in_full(
+    few: StructureBench, start: FloatArray, candidates: Sequence[Candidate]
+) -> tuple[StructureBench, Fit]:
     """Fit one record of each condition whole, from a fit in windows."""
-    return _settled_in(few, fit.x, fit.candidates, FULL)
+    return _settled_in(few, start, candidates, FULL)
 
 
 def with_errors_found(layout: BaseLayout, base: Fit) -> BaseLayout:
@@ -90,7 +98,8 @@ def with_errors_found(layout: BaseLayout, base: Fit) -> BaseLayout:
     if layout.tuned is None:
         return layout
     own = np.array([layout.at(name) for name in layout.tuned.names], dtype=np.int64)
-    free = own[layout.sd[own] > STRUCTURE.open_frequency]
+    alone = own[: layout.tuned.omega.size]
+    free = alone[layout.sd[alone] > STRUCTURE.open_frequency]
     if not free.size:
         return layout
     # The median of the absolute value of a normal variable is its upper quartile.
@@ -116,7 +125,7 @@ def _settled_in(
     """Fit a window, in turn with where each hit landed."""
     rows = _rows(few, window)
     landing = few.landing
-    last: Fit | None = None
+    given: SlopesOnHand | None = None
     for k in range(STRUCTURE.approach_rounds):
         terms = split(x, few.base_sd.size, candidates)
         base = x[: few.base_sd.size]
@@ -130,20 +139,25 @@ def _settled_in(
             exact_slopes=False,
             least_drop=_least_drop(few, candidates, window),
         )
-        fit = descend(problem, x, how, None if last is None else last.jacobian)
+        fit = _stated(few, descend(problem, x, how, given))
         x = fit.x
-        fit = _stated(few, fit)
-        # With laws, slopes cost more than all else: those of the last round do.
-        last = fit if few.nonlinear(candidates) else None
         if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
             break
         if not near_records(few, fit):
             break
         landing, _ = few.landed(fit.base, fit.terms, window.window)
-        if last is None:
-            # Slopes are the largest array there is: none are kept twice.
-            fit = without_slopes(fit)
+        fit, given = _left_to_next(few, fit)
     return few, fit
+
+
+def _left_to_next(bench: StructureBench, fit: Fit) -> tuple[Fit, SlopesOnHand | None]:
+    """Return a fit without slopes, and slopes with which the next one may begin.
+
+    Slopes are the largest array there is: none are kept twice. With laws they cost more
+    than all else, so those of the last round do.
+    """
+    law = fit.jacobian.size and bench.nonlinear(fit.candidates)
+    return without_slopes(fit), SlopesOnHand(fit.jacobian) if law else None
 
 
 def _least_drop(
@@ -185,19 +199,17 @@ def settled(
         if near:
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        law = bench.nonlinear(candidates)
-        if not law:
-            fit = without_slopes(fit)  # as above
         before = fit.cost
-        known = fit.jacobian if law else None
-        fit = _whole(bench, fit.x, candidates, known, exact=near and not law)
+        fit, given = _left_to_next(bench, fit)
+        fit = _whole(bench, fit.x, candidates, given, exact=near and given is None)
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
         if before - fit.cost < least * fit.cost:
             break
     if near and not bench.nonlinear(candidates):
         return bench, fit
+    fit, given = _left_to_next(bench, fit)
     steps = STRUCTURE.fine_iterations
-    return bench, fitted_finely(bench, fit.x, candidates, steps, fit.jacobian)
+    return bench, fitted_finely(bench, fit.x, candidates, steps, given)
 
 
 def _met(
@@ -223,7 +235,7 @@ def fitted_finely(
     start: FloatArray,
     candidates: Sequence[Candidate],
     steps: int,
-    known: FloatArray | None = None,
+    known: SlopesOnHand | None = None,
 ) -> Fit:
     """Fit whole records with the time integration that is judged.
 
@@ -245,7 +257,7 @@ def _whole(
     bench: StructureBench,
     start: FloatArray,
     candidates: Sequence[Candidate],
-    known: FloatArray | None = None,
+    known: SlopesOnHand | None = None,
     *,
     exact: bool = False,
 ) -> Fit:

@@ -31,6 +31,10 @@ from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.fit_summary import (
+    FitSummary,
+    fit_summary,
+)
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
@@ -66,11 +70,13 @@ class StructureOutcome:
         outcome: base, best fit and its rivals.
         bench: on which the best fit was found.
         base_bench: on which the base was found.
+        before: gap and parameters of the base.
     """
 
     outcome: SearchOutcome
     bench: StructureBench
     base_bench: StructureBench
+    before: FitSummary
 
 
 @one_thread()
@@ -90,10 +96,12 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     few = few.at(start, (), few.landing, few.table_floor)
     bench, few = (replace(one, layout=whole.layout) for one in (bench, few))
     first = accept_structure(whole, base, base)
-    if first.passed and not one_effect_takes_much(whole, base):
-        return _complete(whole, base, first, UNTESTED)
+    before = fit_summary(whole, base)
     # The search needs the chi2 of the base; its slopes take a gigabyte.
-    whole, base = whole.at_rest(), without_slopes(base)
+    base = without_slopes(base)
+    if first.passed and not one_effect_takes_much(whole, base):
+        return _complete(whole, base, first, UNTESTED, before)
+    whole = whole.at_rest()
     progress("directed tests")
     few = few.chosen(torques_in_turn(few.campaign.hits))
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
@@ -107,7 +115,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
             if one.acceptance.passed and takes(one.bench, one.fit, base)
         ]
     if not done:
-        return _complete(whole, _with_slopes(whole, base), first, screening)
+        return _complete(whole, base, first, screening, before)
     if found := needless(done[0], screening):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
@@ -118,8 +126,8 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
             done = [one]
         elif two and two[0].acceptance.passed and _both_matter(two[0]):
             done = two
-    none = _complete(whole, _with_slopes(whole, base), first, screening)
-    return StructureOutcome(_judged(none.outcome, done), done[0].bench, whole)
+    none = _complete(whole, base, first, screening, before)
+    return StructureOutcome(_judged(none.outcome, done), done[0].bench, whole, before)
 
 
 def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
@@ -185,11 +193,6 @@ def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None
     return judged if judged.acceptance.passed else None
 
 
-def _with_slopes(bench: StructureBench, base: Fit) -> Fit:
-    """Return the fit of the base with its slopes computed again."""
-    return minimise(make_problem(bench, ()), base.x, FULL, iterations=0)
-
-
 def _with_a_second(
     few: StructureBench, singles: Sequence[Fit], progress: Progress
 ) -> list[Fit]:
@@ -223,11 +226,15 @@ def _both_matter(judged: JudgedFit) -> bool:
 
 
 def _complete(
-    bench: StructureBench, base: Fit, judged: Acceptance, screening: Screening
+    bench: StructureBench,
+    base: Fit,
+    judged: Acceptance,
+    screening: Screening,
+    before: FitSummary,
 ) -> StructureOutcome:
     """Return the outcome that nothing is missing, or that nothing was found."""
     none = SearchOutcome(bench, base, judged, screening, base, judged, (), (base,))
-    return StructureOutcome(none, bench, bench)
+    return StructureOutcome(none, bench, bench, before)
 
 
 def needless(best: JudgedFit, screening: Screening) -> StructureOutcome | None:
@@ -246,7 +253,7 @@ def needless(best: JudgedFit, screening: Screening) -> StructureOutcome | None:
     nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
     if not (judged.passed or nothing):
         return None
-    return _complete(bench, base, judged, screening)
+    return _complete(bench, base, judged, screening, fit_summary(bench, base))
 
 
 def _base_in_windows(few: StructureBench) -> FloatArray:
@@ -298,4 +305,6 @@ def _alike(best: JudgedFit, fit: Fit) -> Fit:
     if best.bench.nonlinear(fit.candidates):
         return fitted_finely(best.bench, fit.x, fit.candidates, 3)
     problem = make_problem(best.bench, fit.candidates)
-    return minimise(problem, fit.x, FULL, iterations=3, exact_slopes=False)
+    # Frequencies that a table leaves open are those of the closed modes of the best.
+    steps = STRUCTURE.whole_iterations if best.bench.uncertain else 3
+    return minimise(problem, fit.x, FULL, iterations=steps, exact_slopes=False)

@@ -16,6 +16,7 @@ from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.continued_laws import continued
+from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     in_full,
@@ -66,7 +67,8 @@ def in_whole_records(
         if _cost_per_row(fit) > limit * _cost_per_row(met[0][1]):
             continue
         progress(f"{words_of(fit.candidates)} in whole records")
-        own, found = in_full(own, fit)
+        own, start = retuned(own, fit.x, fit.candidates)
+        own, found = in_full(own, start, fit.candidates)
         near.append((own.at_rest(), without_slopes(found)))
     near.sort(key=lambda one: one[1].cost)
     done: list[JudgedFit] = []
@@ -76,9 +78,9 @@ def in_whole_records(
         progress(f"{words_of(fit.candidates)} in all records")
         # Slopes of all records are the largest array there is.
         done[:1] = [_at_rest(one) for one in done[:1]]
-        whole, found = settled(
-            bench, fit.x, fit.candidates, near=near_records(own, fit)
-        )
+        whole = replace(bench, layout=own.layout)
+        near_it = near_records(own, fit)
+        whole, found = settled(whole, fit.x, fit.candidates, near=near_it)
         judged = accept_structure(whole, found, base)
         done.append(JudgedFit(whole.at_rest(), found, judged))
         del whole
@@ -126,10 +128,11 @@ def _met_in_windows(
     rival: float | None = None
     for fit in worth_it(few, carried):
         progress(f"{words_of(fit.candidates)} where hits landed")
-        own, met = in_windows(few, fit.x, fit.candidates, rival=rival)
-        if start := continued(own, met):
-            progress(f"{words_of(start[0])} where hits landed")
-            beyond, other = in_windows(own, start[1], start[0])
+        own, start = retuned(few, fit.x, fit.candidates)
+        own, met = in_windows(own, start, fit.candidates, rival=rival)
+        if further := continued(own, met):
+            progress(f"{words_of(further[0])} where hits landed")
+            beyond, other = in_windows(own, further[1], further[0])
             if _cost_per_row(other) < _cost_per_row(met):
                 own, met = beyond, other
         rival = min(_cost_per_row(met), rival or np.inf)

@@ -6,11 +6,20 @@ from dataclasses import replace
 import numpy as np
 from bolted_bodies import NOMINAL, random_bodies, smooth_hits
 
-from jointbench.analysis.gap.structure_response.base_layout import base_layout
+from jointbench.analysis.gap.structure_response.base_layout import (
+    BaseLayout,
+    base_layout,
+)
 from jointbench.analysis.gap.structure_response.closed_modes import real_modes
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_response.joint_state import state_of
-from jointbench.analysis.gap.structure_response.table_errors import tuned_modes
+from jointbench.analysis.gap.structure_response.joint_state import (
+    JointState,
+    state_of,
+)
+from jointbench.analysis.gap.structure_response.table_errors import (
+    tuned_again,
+    tuned_modes,
+)
 
 MADE = HitCampaign("made", random_bodies(), NOMINAL, smooth_hits())
 
@@ -30,7 +39,61 @@ def test_the_sd_of_closed_frequencies_is_that_of_drawn_tables() -> None:
         factor = np.exp(0.005 * rng.standard_normal(made.bodies.omega.size))
         bodies = replace(made.bodies, omega=made.bodies.omega * factor)
         drawn.append(np.log(real_modes(bodies, state).omega[at] / tuned.omega))
-    np.testing.assert_allclose(np.std(drawn, axis=0), tuned.sd, rtol=0.15)
+    sd = tuned.sd[: tuned.omega.size]
+    np.testing.assert_allclose(np.std(drawn, axis=0), sd, rtol=0.15)
+
+
+def uncertain() -> tuple[HitCampaign, BaseLayout, JointState]:
+    """Return a campaign with an uncertain table, its layout and its nominal state."""
+    made = replace(MADE, nominal=replace(NOMINAL, table_sd=(0.005, 0.02)))
+    bare = base_layout(made.bodies, made.nominal)
+    state = state_of(made.bodies, made.nominal, bare, np.zeros(bare.sd.size))
+    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, state))
+    return made, layout, state
+
+
+def test_a_coupling_turns_two_modes_as_stiffness_between_them_does() -> None:
+    """Closed frequencies are those of the two by two problem; others stay."""
+    made, layout, state = uncertain()
+    tuned = layout.tuned
+    assert tuned is not None and len(tuned.pairs) == 2
+    base = np.zeros(layout.sd.size)
+    base[layout.couplings[0]] = 0.03
+    turned = state_of(made.bodies, made.nominal, layout, base)
+    i, j = tuned.pairs[0]
+    own, between = tuned.omega[[i, j]] ** 2, 2.0 * np.prod(tuned.omega[[i, j]])
+    square = np.linalg.eigvalsh([[own[0], 0.03 * between], [0.03 * between, own[1]]])
+    found, before = (real_modes(made.bodies, s).omega for s in (turned, state))
+    others = np.setdiff1d(before, tuned.omega[[i, j]])
+    expected = np.sort(np.concatenate([others, np.sqrt(square)]))
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_a_softer_joint_keeps_what_tunes_the_frequencies() -> None:
+    """Modes of a joint a third as stiff are tuned as those of the nominal one were."""
+    made, layout, _ = uncertain()
+    assert layout.tuned is not None
+    rng = np.random.default_rng(502)
+    own = [layout.at(name) for name in layout.tuned.names]
+    base = np.zeros(layout.sd.size)
+    base[own] = layout.tuned.sd * rng.standard_normal(len(own))
+    tuned = state_of(made.bodies, made.nominal, layout, base)
+    same = tuned_again(made, tuned, layout.tuned)
+    assert same is not None
+    np.testing.assert_allclose(same[1], base[own], atol=1e-12)
+    soft = replace(tuned, compliance=3.0 * tuned.compliance)
+    again = tuned_again(made, soft, layout.tuned)
+    assert again is not None
+    after = real_modes(
+        made.bodies, replace(soft, tuned=again[0].stiffness_at(again[1]))
+    ).omega
+    wanted = real_modes(made.bodies, soft).omega
+    bare = real_modes(made.bodies, replace(soft, tuned=None)).omega
+    lowest = np.isin(bare, again[0].omega)
+    shift = np.abs(np.log(wanted / bare))[lowest]
+    left = np.abs(np.log(after / wanted))[lowest]
+    assert shift.max() > 2e-3
+    assert left.max() < 0.1 * shift.max()
 
 
 def test_an_exact_table_leaves_no_frequency_open() -> None:
