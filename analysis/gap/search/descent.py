@@ -12,6 +12,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
 from jointbench.analysis.gap.response.threads import each
 from jointbench.analysis.gap.search.search_settings import SEARCH
+from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 
 
 def _steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
@@ -79,21 +80,6 @@ def _with_room(
     columns = np.empty((x.size, residual.size))
     columns[:count] = known.T
     return columns, np.arange(count, x.size)
-
-
-class SlopesOnHand:
-    """Slopes that one fit leaves to the next, which alone keeps them.
-
-    They are the largest array of a fit, and are dropped when others take their place.
-    """
-
-    def __init__(self, slopes: FloatArray) -> None:
-        """Hold the slopes, shape (n_rows, n)."""
-        self._held: list[FloatArray] = [slopes]
-
-    def taken(self) -> FloatArray:
-        """Return the slopes and forget them."""
-        return self._held.pop()
 
 
 _NO_SLOPES = np.zeros((0, 0))

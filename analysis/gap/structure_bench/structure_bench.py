@@ -416,8 +416,9 @@ class StructureBench:
         fine: bool = False,
     ) -> HitModel:
         """Return the model at a state; the last one of a window is kept."""
-        key = (base.tobytes(), *((t.candidate, t.coordinates.tobytes()) for t in terms))
-        place = ("model", window_count(self.campaign.hits, window), fine)
+        state = ((t.candidate, t.coordinates.tobytes()) for t in terms)
+        key = (fine, base.tobytes(), *state)
+        place = ("model", window_count(self.campaign.hits, window))
         last = self.kept.get(place)
         if last is not None and last[0] == key:
             kept: HitModel = last[1]

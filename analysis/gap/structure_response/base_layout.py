@@ -64,6 +64,18 @@ class BaseLayout:
         names = self.tuned.names[self.tuned.omega.size :]
         return np.array([self.at(name) for name in names], dtype=np.int64)
 
+    def tuned_in(self, modes: TunedModes, sd: FloatArray) -> "BaseLayout":
+        """Return the layout with as many other closed modes in the place of its own.
+
+        Args:
+            modes: the other ones.
+            sd: of all coordinates, shape (n_base,).
+        """
+        old = () if self.tuned is None else self.tuned.names
+        new = dict(zip(old, modes.names, strict=True))
+        names = tuple(new.get(name, name) for name in self.names)
+        return replace(self, names=names, sd=sd, tuned=modes)
+
 
 def stiffness_name(direction: int) -> str:
     """Return the name of the stiffness coordinate of a direction."""
@@ -124,21 +136,6 @@ def base_layout(
     rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
     names, sd, units = zip(*rows, strict=True)
     return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count), tuned)
-
-
-def with_tuned(layout: BaseLayout, tuned: TunedModes, sd: FloatArray) -> BaseLayout:
-    """Return a layout with as many other closed modes in the place of its own.
-
-    Args:
-        layout: with tuned modes.
-        tuned: the other ones.
-        sd: of all coordinates, shape (n_base,).
-    """
-    if layout.tuned is None:
-        raise ValueError("the layout has no tuned modes")
-    new = dict(zip(layout.tuned.names, tuned.names, strict=True))
-    names = tuple(new.get(name, name) for name in layout.names)
-    return replace(layout, names=names, sd=sd, tuned=tuned)
 
 
 def _contrasts(count: int) -> FloatArray:

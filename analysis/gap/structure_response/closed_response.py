@@ -12,7 +12,7 @@ dH/dz_j = (R D J' A^-1)_j (A^-1 J D B')_j, and dH/dD_n is the product of closed 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -32,6 +32,7 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import (
     NORMAL,
     JointedBodies,
 )
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -226,11 +227,41 @@ def _forces_by_column(
 def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
     """Return closed rows and columns, for slopes.
 
+    With what is added to the bodies they are twice as large as without, so they are
+    computed for some lines at a time.
+
     Args:
         found: closed response.
         bodies: modes and rows.
         state: at which it was closed.
     """
+    lines, joints = found.s.size, len(bodies.joint_rows)
+    rows, columns = found.response.shape[1:]
+    modes = bodies.omega.size
+    shapes = (joints, rows), (joints, columns), (rows, modes), (modes, columns)
+    whole = ClosedRows(*(np.empty((lines, *shape), complex) for shape in shapes))
+    for first in range(0, lines, STRUCTURE.lines_at_once):
+        some = slice(first, first + STRUCTURE.lines_at_once)
+        part = _closed_at(_some_lines(found, some), bodies, state)
+        whole.left[some], whole.right[some] = part.left, part.right
+        whole.rows[some], whole.columns[some] = part.rows, part.columns
+    return whole
+
+
+def _some_lines(found: Closure, some: slice) -> Closure:
+    """Return the closure on some of its lines."""
+    return replace(
+        found,
+        s=found.s[some],
+        response=found.response[some],
+        left=found.left[some],
+        system=found.system[some],
+        across=found.across[some],
+    )
+
+
+def _closed_at(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
+    """Return closed rows and columns on all lines of a closure."""
     rows, _ = _ends(bodies, state, np.zeros((0, bodies.omega.size)))
     columns, joints, left = found.columns, bodies.joint_rows, found.left
     right = _solved(found.system, found.across)

@@ -18,7 +18,6 @@ from jointbench.analysis.gap.structure_bench.structure_bench import (
     StructureBench,
     frames_of,
 )
-from jointbench.analysis.gap.structure_response.base_layout import with_tuned
 from jointbench.analysis.gap.structure_response.table_errors import tuned_again
 
 
@@ -49,5 +48,5 @@ def retuned(
     # Deviations of the base have scaled all of them, see `with_errors_found`.
     sd[own] = new.sd * np.median(sd[own] / old.sd)
     moved[own] = tuning
-    layout = with_tuned(layout, new, sd)
+    layout = layout.tuned_in(new, sd)
     return replace(bench, layout=layout, kept=frames_of(bench.kept)), moved

@@ -24,11 +24,11 @@ from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_sl
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import (
     Descent,
-    SlopesOnHand,
     cost_at,
     descend,
     minimise,
 )
+from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 from jointbench.analysis.gap.structure_bench.beyond_table import beyond_table
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
