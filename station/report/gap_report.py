@@ -120,7 +120,8 @@ def _tiles(found: Diagnosis) -> tuple[Tile, ...]:
     deviation = f"{short(largest)} sd"
     if _after(found) is not None:
         deviation = f"{short(largest)} → {short(after.prior_deviation)} sd"
-    tiles.append(Tile("largest prior deviation", deviation, "acceptable up to 4 sd"))
+    note = f"acceptable up to {short(found.acceptable_deviation)} sd"
+    tiles.append(Tile("largest prior deviation", deviation, note))
     return tuple(tiles)
 
 

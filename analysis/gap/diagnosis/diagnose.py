@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Diagnose a campaign: verdict and evidence from the outcome of the search."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -254,14 +254,23 @@ def closest_of(outcome: SearchOutcome, bench: NoisyBench) -> Closest | None:
 
 
 def effects_of(
-    outcome: SearchOutcome, bench: NoisyBench, fits: Sequence[Fit]
+    outcome: SearchOutcome,
+    bench: NoisyBench,
+    fits: Sequence[Fit],
+    sloped: Callable[[Fit], Fit] = lambda fit: fit,
 ) -> tuple[NamedEffect, ...]:
     """Return the effects of explanations, each as in the first that contains it.
 
     The confidence of an effect is the sum over the rivals that contain it.
+
+    Args:
+        outcome: of the search.
+        bench: on which the fits were found.
+        fits: explanations.
+        sloped: returns a fit with its slopes, for one explanation at a time.
     """
     found: dict[str, NamedEffect] = {}
-    for fit in fits:
+    for fit in map(sloped, fits):
         evidence = evidence_of(outcome, bench, fit)
         confidence = confidence_of(evidence) / len(fits)
         for k, (label, term) in enumerate(

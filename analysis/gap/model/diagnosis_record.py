@@ -150,6 +150,8 @@ class Diagnosis:
             unless the verdict is none.
         second_method: the best explanation predicted by a second method.
         curves: modes over amplitude, measured and as predicted; None if not asked for.
+        prior_limit: largest acceptable deviation of a base parameter [sd]; None for
+            that of the policy.
     """
 
     verdict: Finding
@@ -172,6 +174,12 @@ class Diagnosis:
     limits: tuple[EffectLimit, ...] = ()
     second_method: SecondMethod | None = None
     curves: CurveEvidence | None = None
+    prior_limit: float | None = None
+
+    @property
+    def acceptable_deviation(self) -> float:
+        """Largest acceptable deviation of a base parameter [sd]."""
+        return self.policy.prior_limit if self.prior_limit is None else self.prior_limit
 
     @property
     def predicted(self) -> bool:

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -41,6 +42,7 @@ from jointbench.analysis.gap.structure_search.structure_search import (
     StructureOutcome,
     search_structure,
 )
+from jointbench.analysis.gap.structure_search.whole_records import with_slopes
 
 OTHER_POINTS = (
     "hit a further point off the lines of symmetry, in the tangential direction as "
@@ -122,7 +124,7 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
     after = before if best is base else fit_summary(on, best)
     return Diagnosis(
         verdict=verdict.finding,
-        effects=effects_of(outcome, bench, shown),
+        effects=effects_of(outcome, bench, shown, partial(with_slopes, bench)),
         candidates=ranked_fits(
             bench,
             [outcome.base, *outcome.ranked],
@@ -148,6 +150,7 @@ def _conclude(found: StructureOutcome) -> Diagnosis:
         explanations=tuple(labels_of_fit(f) for f in outcome.level if accepted),
         policy=bench.policy,
         closest=closest_of(outcome, bench),
+        prior_limit=bench.policy.floor_prior_limit,
     )
 
 

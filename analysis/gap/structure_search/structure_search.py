@@ -301,10 +301,11 @@ def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
 
 
 def _alike(best: JudgedFit, fit: Fit) -> Fit:
-    """Return a rival under the whitening of the best fit."""
+    """Return a rival under the whitening of the best fit, with the slopes of a law."""
     if best.bench.nonlinear(fit.candidates):
         return fitted_finely(best.bench, fit.x, fit.candidates, 3)
     problem = make_problem(best.bench, fit.candidates)
     # Frequencies that a table leaves open are those of the closed modes of the best.
     steps = STRUCTURE.whole_iterations if best.bench.uncertain else 3
-    return minimise(problem, fit.x, FULL, iterations=steps, exact_slopes=False)
+    found = minimise(problem, fit.x, FULL, iterations=steps, exact_slopes=False)
+    return without_slopes(found)

@@ -86,7 +86,8 @@ def in_whole_records(
         del whole
         done.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
         done[1:] = [replace(one, fit=without_slopes(one.fit)) for one in done[1:]]
-    return [_with_slopes(one) for one in done[:1]] + done[1:]
+    best = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in done[:1]]
+    return best + done[1:]
 
 
 def _at_rest(one: JudgedFit) -> JudgedFit:
@@ -96,12 +97,16 @@ def _at_rest(one: JudgedFit) -> JudgedFit:
     return replace(one, fit=without_slopes(one.fit))
 
 
-def _with_slopes(one: JudgedFit) -> JudgedFit:
-    """Return a fit with its slopes, which a verdict needs."""
-    if one.fit.jacobian.size:
-        return one
-    problem = make_problem(one.bench, one.fit.candidates)
-    return replace(one, fit=minimise(problem, one.fit.x, FULL, iterations=0))
+def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
+    """Return a fit with its slopes, which a verdict needs.
+
+    Args:
+        bench: on which it was found.
+        fit: of effects that are not integrated, or with its slopes.
+    """
+    if fit.jacobian.size:
+        return fit
+    return minimise(make_problem(bench, fit.candidates), fit.x, FULL, iterations=0)
 
 
 def leaves_much(best: JudgedFit) -> bool:

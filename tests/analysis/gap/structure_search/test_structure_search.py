@@ -10,6 +10,7 @@ from hit_campaigns import Hidden, write_campaign
 
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -139,6 +140,7 @@ def test_the_gap_of_an_uncertain_table_is_in_units_of_its_floor(
     assert [e.name for e in found.effects] == ["gain_error"]
     assert found.gap_before.value > 1.0
     assert found.gap_after.value < 0.1 * found.gap_before.value
+    assert found.acceptable_deviation == STANDARD.floor_prior_limit
 
 
 def based(bench: StructureBench) -> tuple[StructureBench, Fit]:
