@@ -174,6 +174,32 @@ class StructureSettings:
         "least sd of a frequency or coupling of closed modes",
         "errors of a table reach no rigid motion: far below the width of any mode",
     )
+    sought_turn: float = numerical(
+        0.25,
+        "cycles",
+        "step of a closed frequency that is sought, at the end of the first window of "
+        "the approach",
+        "a descent follows half a cycle",
+    )
+    sought_reach: float = numerical(
+        0.04,
+        "-",
+        "how far it is sought to either side",
+        "tables that are off by 1 % have one of twenty modes off by 3",
+    )
+    sought_share: float = numerical(
+        0.02,
+        "of the cost",
+        "drop of the cost there by which it is found elsewhere",
+        "a mode of twenty carries 5 % of it",
+    )
+    sought_chi2: float = numerical(
+        0.5,
+        "of the limit",
+        "chi2/dof of the base in one record of each condition from which frequencies "
+        "are sought",
+        "complete benches leave 0.1 to 0.4, the limit is 1.3",
+    )
     open_frequency: float = numerical(
         1e-3,
         "-",

@@ -84,16 +84,18 @@ def in_full(
     return _settled_in(few, start, candidates, FULL)
 
 
-def with_errors_found(layout: BaseLayout, base: Fit) -> BaseLayout:
+def with_errors_found(layout: BaseLayout, base: Fit, *, explains: bool) -> BaseLayout:
     """Return the base coordinates with frequencies as uncertain as the base shows.
 
     The stated sd of the frequencies of a table is a guess of one size for all of them.
     Where their median deviation is larger, an effect that shifts many modes would be
-    named for it.
+    named for it. The deviations of a base that explains the records are all due to the
+    table, so their rms counts: of twenty modes, one is often off by three sd.
 
     Args:
         layout: as stated.
         base: fit without effects.
+        explains: whether it explains the records.
     """
     if layout.tuned is None:
         return layout
@@ -102,8 +104,11 @@ def with_errors_found(layout: BaseLayout, base: Fit) -> BaseLayout:
     free = alone[layout.sd[alone] > STRUCTURE.open_frequency]
     if not free.size:
         return layout
+    deviations = np.abs(base.prior_deviations[free])
     # The median of the absolute value of a normal variable is its upper quartile.
-    found = float(np.median(np.abs(base.prior_deviations[free])) / ndtri(0.75))
+    found = float(np.median(deviations) / ndtri(0.75))
+    if explains:
+        found = max(found, float(np.sqrt(np.mean(deviations**2))))
     sd = layout.sd.copy()
     sd[own] *= float(np.clip(found, 1.0, STRUCTURE.largest_size))
     return replace(layout, sd=sd)

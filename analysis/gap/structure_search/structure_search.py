@@ -45,6 +45,7 @@ from jointbench.analysis.gap.structure_search.short_windows import (
     carried,
     tested,
 )
+from jointbench.analysis.gap.structure_search.sought_frequencies import sought
 from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     approached,
@@ -276,12 +277,26 @@ def _base_in_whole_records(
     all records.
     """
     few = replace(few, reach=bench.reach, floor=few.table_floor)
-    fit = without_slopes(approached(few, start, ())[1])
-    bench = replace(bench, layout=with_errors_found(bench.layout, fit))
-    if fit.chi2 * few.coherence < STRUCTURE.explaining_chi2 * fit.residual.size:
+    few, fit = approached(few, start, ())
+    if _may_have_lost_a_mode(few, fit) and (further := sought(few, fit)) is not None:
+        beyond, other = approached(few, further, ())
+        few, fit = (beyond, other) if other.cost < fit.cost else (few, fit)
+    fit = without_slopes(fit)
+    chi2 = fit.chi2 * few.coherence / fit.residual.size
+    explains = chi2 < few.policy.floor_chi2
+    layout = with_errors_found(bench.layout, fit, explains=explains)
+    bench = replace(bench, layout=layout)
+    if chi2 < STRUCTURE.explaining_chi2:
         return settled(bench, fit.x, (), near=True)
     whole = bench.at(fit.x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), fit.x, FULL, iterations=0)
+
+
+def _may_have_lost_a_mode(few: StructureBench, fit: Fit) -> bool:
+    """Return whether a base leaves more than usual, but less than an effect does."""
+    chi2 = fit.chi2 * few.coherence / fit.residual.size
+    usual = STRUCTURE.sought_chi2 * few.policy.floor_chi2
+    return few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2
 
 
 def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:

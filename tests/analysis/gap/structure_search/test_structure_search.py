@@ -11,6 +11,7 @@ from hit_campaigns import Hidden, write_campaign
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -27,6 +28,7 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
+from jointbench.analysis.gap.structure_search.sought_frequencies import sought
 from jointbench.analysis.gap.structure_search.structure_diagnosis import (
     diagnose_structure,
 )
@@ -34,6 +36,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     accept_structure,
     in_windows,
     settled,
+    with_errors_found,
 )
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
@@ -306,3 +309,59 @@ def test_torques_in_turn_meet_every_point_and_level(found: StructureOutcome) -> 
     assert {(hits.point[k], hits.level[k]) for k in few} == points
     assert len(few) == len(points) < len(every)
     assert set(hits.torque[few]) == set(hits.torque)
+
+
+@pytest.fixture(scope="module")
+def uncertain(found: StructureOutcome) -> StructureBench:
+    """Return hits of each condition with an uncertain modal table."""
+    campaign = found.base_bench.campaign
+    nominal = replace(campaign.nominal, table_sd=(0.005, 0.02))
+    bench = make_structure_bench(replace(campaign, nominal=nominal))
+    few = replace(bench, reach=STRUCTURE.final_reach)
+    few = few.chosen(one_of_each(campaign.hits))
+    return few.at(np.zeros(few.base_sd.size), (), few.landing, few.table_floor)
+
+
+def test_a_frequency_that_a_descent_cannot_reach_is_found(
+    uncertain: StructureBench,
+) -> None:
+    """A mode 3 % off its table, half a cycle and more in 20 ms, is sought and found."""
+    tuned, window = uncertain.layout.tuned, Resolution(0.02)
+    assert tuned is not None
+    inside = 2.0 * np.pi * uncertain.campaign.hits.band
+    k = int(np.flatnonzero(tuned.omega < inside)[-1])
+    at, x = uncertain.layout.at(tuned.names[k]), np.zeros(uncertain.base_sd.size)
+    off = x.copy()
+    off[at] = 0.03
+    hits = replace(uncertain.campaign.hits, response=uncertain.response(off, (), None))
+    made = replace(uncertain, campaign=replace(uncertain.campaign, hits=hits), kept={})
+    lost, there = (
+        minimise(make_problem(made, ()), start, window, iterations=0)
+        for start in (x, off)
+    )
+    back = sought(made, lost)
+    assert back is not None
+    step = 2.0 * np.pi * STRUCTURE.sought_turn / 0.02 / tuned.omega[k]
+    assert abs(back[at] - 0.03) < step
+    assert sought(made, there) is None
+
+
+def test_frequencies_are_as_uncertain_as_a_base_that_explains_shows(
+    uncertain: StructureBench,
+) -> None:
+    """One far off counts only where nothing but the table can have done it."""
+    tuned = uncertain.layout.tuned
+    assert tuned is not None
+    own = [uncertain.layout.at(name) for name in tuned.names[: tuned.omega.size]]
+    free = [k for k in own if uncertain.base_sd[k] > STRUCTURE.open_frequency]
+    x = np.zeros(uncertain.base_sd.size)
+    x[free] = 0.1 * uncertain.base_sd[free]
+    x[free[-1]] = 5.0 * uncertain.base_sd[free[-1]]
+    fit = minimise(make_problem(uncertain, ()), x, SHORT, iterations=0)
+    left, raised = (
+        with_errors_found(uncertain.layout, fit, explains=one).sd / uncertain.base_sd
+        for one in (False, True)
+    )
+    np.testing.assert_allclose(left, 1.0)
+    rms = np.sqrt((25.0 + 0.01 * (len(free) - 1)) / len(free))
+    np.testing.assert_allclose(raised[own], min(rms, STRUCTURE.largest_size))

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""Search for closed frequencies that a fit has lost.
+
+A descent follows a frequency while its error turns the motion by less than half a cycle
+before it has rung down. A mode that is further off stays in a minimum of its own.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import cost_at
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+
+
+def sought(few: StructureBench, fit: Fit) -> FloatArray | None:
+    """Return coordinates with frequencies found elsewhere; None if none is.
+
+    Args:
+        few: one record of each condition, on which the fit was found.
+        fit: of the base.
+    """
+    tuned = few.layout.tuned
+    if tuned is None:
+        return None
+    window = STRUCTURE.approach_windows[0]
+    # Priors would draw a frequency back; the fit that follows weighs them.
+    free = np.zeros(fit.x.size)
+    problem = replace(make_problem(few, fit.candidates), prior=free)
+    x, found = fit.x, False
+    cost = cost_at(problem, x, Resolution(window))
+    for k, name in enumerate(tuned.names[: tuned.omega.size]):
+        at = few.layout.at(name)
+        step = 2.0 * np.pi * STRUCTURE.sought_turn / window / tuned.omega[k]
+        count = int(STRUCTURE.sought_reach / step)
+        shifts = step * np.concatenate([np.arange(-count, 0), np.arange(1, count + 1)])
+        starts = [x + shift * (np.arange(x.size) == at) for shift in shifts]
+        costs = [cost_at(problem, one, Resolution(window)) for one in starts]
+        if costs and min(costs) < (1.0 - STRUCTURE.sought_share) * cost:
+            x, cost, found = starts[int(np.argmin(costs))], min(costs), True
+    return x if found else None
