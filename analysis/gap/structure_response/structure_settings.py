@@ -380,12 +380,12 @@ class StructureSettings:
         "481101 to 481104), a hidden one took 0.86 (492514)",
     )
     uncertain_drop: float = numerical(
-        25.0,
+        40.0,
         "chi2",
         "drop of the cost of an accepted base from which one effect is named where the "
         "modal table is uncertain",
-        "complete models had drops of up to 9 (seeds 503103, 503200, 503207); chance "
-        "reaches 17 in 0.5 % of cases",
+        "chance reaches 17 in 0.5 % of cases, but errors of a table are not normal: a "
+        "mass of 0.16 kg was named at 30 (seed 515510); right effects had 48 to 1048",
     )
     whole_cost_ratio: float = numerical(
         3.0,
