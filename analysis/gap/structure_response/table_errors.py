@@ -38,13 +38,14 @@ def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:
     if not any(campaign.nominal.table_sd):
         return None
     modes = real_modes(campaign.bodies, state)
-    sd = _frequency_sd(campaign, campaign.bodies, modes)
-    highest = 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
-    near = np.flatnonzero(_open(campaign, modes, sd) & (modes.omega < highest))
-    mixing = np.triu(mixing_of(campaign, campaign.bodies, modes)[np.ix_(near, near)])
+    coupling = _coupling(campaign, campaign.bodies, modes)
+    shifted = _shifted(campaign, modes, _frequency_sd(coupling, modes))
+    near = np.flatnonzero(shifted & (modes.omega < _highest(campaign)))
+    mixing = np.triu(_mixing(coupling, modes)[np.ix_(near, near)])
     count = int(np.sum(mixing > STRUCTURE.close_mixing))
     count = max(count, STRUCTURE.least_pairs)
-    return _tuned(campaign, state, modes, near, count)
+    mass, _, _ = mass_damping_stiffness(campaign.bodies, state, 1.0)
+    return _tuned(mass, coupling, modes, near, count)
 
 
 def tuned_again(
@@ -64,29 +65,34 @@ def tuned_again(
         None if nothing tunes it, or there are not as many.
     """
     count = like.omega.size
-    bare = replace(state, tuned=None)
-    modes = real_modes(state.bodies_of(campaign.bodies), bare)
+    bare, bodies = replace(state, tuned=None), state.bodies_of(campaign.bodies)
+    modes = real_modes(bodies, bare)
     if state.tuned is None or modes.omega.size < count:
         return None
-    sd = _frequency_sd(campaign, state.bodies_of(campaign.bodies), modes)
-    unshifted = ~_open(campaign, modes, sd)
+    coupling = _coupling(campaign, bodies, modes)
+    unshifted = ~_shifted(campaign, modes, _frequency_sd(coupling, modes))
     found = np.sort(np.argsort(unshifted, kind="stable")[:count])
-    tuned = _tuned(campaign, bare, modes, found, len(like.pairs))
+    mass, _, _ = mass_damping_stiffness(bodies, bare, 1.0)
+    tuned = _tuned(mass, coupling, modes, found, len(like.pairs))
     across = state.tuned.rows @ modes.shapes[:, found]
     return tuned, tuned.coordinates_of(across.T @ state.tuned.stiffness @ across)
 
 
-def _open(campaign: HitCampaign, modes: RealModes, sd: FloatArray) -> BoolArray:
+def _highest(campaign: HitCampaign) -> float:
+    """Return the angular frequency up to which closed modes are tuned [rad/s]."""
+    return 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
+
+
+def _shifted(campaign: HitCampaign, modes: RealModes, sd: FloatArray) -> BoolArray:
     """Return which modes errors of the table shift during a record, shape (n,)."""
-    lowest = 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
-    elastic = modes.omega > STRUCTURE.rigid_share * lowest
+    elastic = modes.omega > STRUCTURE.rigid_share * _highest(campaign)
     duration = campaign.hits.response.shape[2] / campaign.hits.sample_rate
     return np.asarray(elastic & (sd * modes.omega * duration > STRUCTURE.least_phase))
 
 
 def _tuned(
-    campaign: HitCampaign,
-    state: JointState,
+    mass: FloatArray,
+    coupling: FloatArray,
     modes: RealModes,
     chosen: IntArray,
     pairs: int,
@@ -94,33 +100,27 @@ def _tuned(
     """Return some of the modes, those couplings that mix them most with a coordinate.
 
     Args:
-        campaign: with the uncertainty of the table.
-        state: which is not tuned.
-        modes: of that state.
+        mass: of the free modes, shape (n_modes, n_modes).
+        coupling: variance of the stiffness between closed modes, shape (n, n).
+        modes: closed ones.
         chosen: some of them, shape (n_tuned,).
         pairs: number of couplings.
     """
-    bodies = state.bodies_of(campaign.bodies)
-    mass, _, _ = mass_damping_stiffness(bodies, state, 1.0)
-    rows = (mass @ modes.shapes[:, chosen]).T
-    omega = modes.omega[chosen]
-    both = np.ix_(chosen, chosen)
+    omega, both = modes.omega[chosen], np.ix_(chosen, chosen)
     first, second = np.triu_indices(chosen.size, 1)
-    mixing = mixing_of(campaign, bodies, modes)[both][first, second]
+    mixing = _mixing(coupling, modes)[both][first, second]
     most = np.sort(np.argsort(-mixing)[:pairs])
     first, second = first[most], second[most]
-    coupling = _coupling(campaign, bodies, modes)[both][first, second]
-    between = np.sqrt(coupling) / (2.0 * omega[first] * omega[second])
-    alone = _frequency_sd(campaign, bodies, modes)[chosen]
+    between = np.sqrt(coupling[both][first, second])
+    between /= 2.0 * omega[first] * omega[second]
+    alone = _frequency_sd(coupling, modes)[chosen]
     sd = np.maximum(np.concatenate([alone, between]), STRUCTURE.least_tuning)
+    rows = (mass @ modes.shapes[:, chosen]).T
     return TunedModes(rows, omega, np.stack([first, second], axis=1), sd)
 
 
-def _frequency_sd(
-    campaign: HitCampaign, bodies: JointedBodies, modes: RealModes
-) -> FloatArray:
+def _frequency_sd(coupling: FloatArray, modes: RealModes) -> FloatArray:
     """Return the sd of the logarithms of closed frequencies, shape (n,)."""
-    coupling = _coupling(campaign, bodies, modes)
     # Of second order: joints of rigid bodies have little of the first.
     apart = np.abs(modes.omega[:, None] ** 2 - modes.omega**2)
     beside = coupling / np.hypot(apart, np.sqrt(coupling) + 1.0)
@@ -142,9 +142,14 @@ def mixing_of(
         bodies: modes and rows.
         modes: closed ones.
     """
-    coupling = np.sqrt(_coupling(campaign, bodies, modes))
+    return _mixing(_coupling(campaign, bodies, modes), modes)
+
+
+def _mixing(coupling: FloatArray, modes: RealModes) -> FloatArray:
+    """Return it from the variance of the stiffness between the modes."""
+    root = np.sqrt(coupling)
     apart = np.abs(modes.omega[:, None] ** 2 - modes.omega**2)
-    found = coupling / np.maximum(np.hypot(apart, coupling), STRUCTURE.least_direction)
+    found = root / np.maximum(np.hypot(apart, root), STRUCTURE.least_direction)
     np.fill_diagonal(found, 0.0)
     return np.asarray(found)
 
