@@ -387,6 +387,14 @@ class StructureSettings:
         "chance reaches 17 in 0.5 % of cases, but errors of a table are not normal: a "
         "mass of 0.16 kg was named at 30 (seed 515510); right effects had 48 to 1048",
     )
+    outstanding_channel: float = numerical(
+        3.0,
+        "-",
+        "chi2 of a channel over that of a typical one above which, beyond the limit of "
+        "chi2, the channel is unexplained where the modal table is uncertain",
+        "28 complete benches whose base explains: two have a channel beyond 1.3, of at "
+        "most 2.3 typical ones; faulty sensors beyond 1.3 had 3.1 to 40",
+    )
     whole_cost_ratio: float = numerical(
         3.0,
         "of the best cost",

@@ -57,6 +57,7 @@ from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     in_whole_records,
     leaves_much,
+    sensors_beside_base,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)
@@ -109,6 +110,8 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
     done = in_whole_records(bench, few, base, singles, progress)
+    if whole.uncertain and first.excess <= first.allowed:
+        done = sensors_beside_base(whole, base, done, progress)
     if first.passed:
         done = [
             one

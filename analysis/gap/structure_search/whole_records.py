@@ -90,6 +90,37 @@ def in_whole_records(
     return best + done[1:]
 
 
+def sensors_beside_base(
+    whole: StructureBench, base: Fit, done: Sequence[JudgedFit], progress: Progress
+) -> list[JudgedFit]:
+    """Return the fits, those of sensors from the base where that is nearer, best first.
+
+    A sensor at fault leaves the structure as it is, and so a base that explains most of
+    the records, which a descent from short windows need not find again.
+
+    Args:
+        whole: all records, on which the base was found.
+        base: fit without effects.
+        done: fits with effects, accepted ones first.
+        progress: receives one line for each fit.
+    """
+    found: list[JudgedFit] = []
+    for one in done:
+        candidates = one.fit.candidates
+        if any(c.site.kind != "channel" for c in candidates):
+            found.append(one)
+            continue
+        progress(f"{words_of(candidates)} from the base")
+        start = np.concatenate([base.base, one.fit.x[one.fit.n_base :]])
+        own, fit = settled(whole, start, candidates, near=True)
+        judged = JudgedFit(own.at_rest(), fit, accept_structure(own, fit, base))
+        found.append(judged if fit.cost < one.fit.cost else one)
+    found.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
+    rest = [replace(one, fit=without_slopes(one.fit)) for one in found[1:]]
+    best = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in found[:1]]
+    return best + rest
+
+
 def _at_rest(one: JudgedFit) -> JudgedFit:
     """Return a fit without slopes, but for those of laws, which take long."""
     if one.bench.nonlinear(one.fit.candidates):

@@ -65,3 +65,16 @@ def test_what_differs_between_levels_is_no_error_of_a_table(
     chi2, reason = left(bench, 0.0, 0.06)
     assert chi2 > bench.policy.floor_chi2
     assert "is due to no error of the modal table" in reason
+
+
+def test_a_channel_that_turns_away_alone_stands_out(bench: StructureBench) -> None:
+    """Of 7 % of another channel in the second, no table makes more than a part."""
+    base = np.zeros(bench.base_sd.size)
+    response = bench.response(base, (), None)
+    response[:, 1] += 0.07 * response[:, 0]
+    hits = replace(bench.campaign.hits, response=response)
+    own = replace(bench, campaign=replace(bench.campaign, hits=hits))
+    fit = minimise(make_problem(own, ()), base, iterations=0)
+    judged = accept_structure(own, fit, fit)
+    assert judged.excess < judged.allowed
+    assert judged.reason.startswith(f"{bench.campaign.bodies.channels[1]} leaves")

@@ -51,6 +51,7 @@ from jointbench.analysis.gap.structure_search.structure_search import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     leaves_much,
+    sensors_beside_base,
     worth_it,
 )
 from jointbench.station.schemas.nominal_bench_file import read_nominal
@@ -365,3 +366,18 @@ def test_frequencies_are_as_uncertain_as_a_base_that_explains_shows(
     np.testing.assert_allclose(left, 1.0)
     rms = np.sqrt((25.0 + 0.01 * (len(free) - 1)) / len(free))
     np.testing.assert_allclose(raised[own], min(rms, STRUCTURE.largest_size))
+
+
+def test_a_sensor_is_fitted_from_the_base_too(found: StructureOutcome) -> None:
+    """A gain that a descent left at 50 % is met again from the base."""
+    base, bench = found.outcome.base, found.base_bench
+    gain = next(c for c in bench.candidates if c.effect.name == "gain_error")
+    start = np.append(base.base, 0.5)
+    fit = minimise(make_problem(bench, (gain,)), start, iterations=0)
+    far = JudgedFit(bench, fit, accept_structure(bench, fit, base))
+    mass = with_mass(found, 1e-9)
+    near, other = sensors_beside_base(bench, base, [far, mass], lambda line: None)
+    met, kept = (near, other) if near.fit.candidates == (gain,) else (other, near)
+    assert met.fit.cost < fit.cost
+    assert abs(met.fit.x[-1]) < 0.05
+    assert kept.fit.cost == mass.fit.cost
