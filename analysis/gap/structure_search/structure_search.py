@@ -57,7 +57,6 @@ from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     in_whole_records,
     leaves_much,
-    sensors_beside_base,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)
@@ -109,9 +108,9 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
-    done = in_whole_records(bench, few, base, singles, progress)
-    if whole.uncertain and first.excess <= first.allowed:
-        done = sensors_beside_base(whole, base, done, progress)
+    explains = whole.uncertain and first.excess <= first.allowed
+    explained = whole if explains else None
+    done = in_whole_records(bench, few, base, singles, progress, explained=explained)
     if first.passed:
         done = [
             one
@@ -242,13 +241,19 @@ def _complete(
 
 
 def needless(best: JudgedFit, screening: Screening) -> StructureOutcome | None:
-    """Return the outcome without an effect where the best one is nearly off.
+    """Return the outcome without an effect where the base needs none from there.
 
-    Such a fit has found the records by its base, which is a further start for the base
-    alone. What the base does not explain either is no reason to name the effect.
+    A fit has found the records by its base, which is a further start for the base
+    alone: from its nominal values, it may have ended beside its minimum. What the base
+    does not explain either is no reason to name an effect that is nearly off. With an
+    uncertain table, the base may explain the hits from the fit of any effect.
+
+    Args:
+        best: fit with effects, the best one.
+        screening: directed tests that led to it.
     """
     amplitude = weakest_amplitude(best.fit)
-    if amplitude >= STRUCTURE.plain_amplitude:
+    if amplitude >= STRUCTURE.plain_amplitude and not best.bench.uncertain:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
     judged = accept_structure(bench, base, base)

@@ -45,6 +45,8 @@ def in_whole_records(
     base: Fit,
     carried: Sequence[Fit],
     progress: Progress,
+    *,
+    explained: StructureBench | None = None,
 ) -> list[JudgedFit]:
     """Fit the best candidates to whole records, accepted ones first.
 
@@ -56,6 +58,8 @@ def in_whole_records(
         base: fit without effects.
         carried: fits in the longer window, best first.
         progress: receives one line for each fit.
+        explained: all records as the base explains them, from which sensors are fitted
+            too.
     """
     few = replace(few, reach=bench.reach)
     met = _met_in_windows(few, carried, progress)
@@ -83,9 +87,11 @@ def in_whole_records(
         whole, found = settled(whole, fit.x, fit.candidates, near=near_it)
         judged = accept_structure(whole, found, base)
         done.append(JudgedFit(whole.at_rest(), found, judged))
-        del whole
-        done.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
-        done[1:] = [replace(one, fit=without_slopes(one.fit)) for one in done[1:]]
+        del whole, found
+        done = _best_first(done)
+    if explained is not None:
+        done = [_at_rest(one) for one in done]
+        done = sensors_beside_base(explained, base, done, progress)
     best = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in done[:1]]
     return best + done[1:]
 
@@ -114,11 +120,15 @@ def sensors_beside_base(
         start = np.concatenate([base.base, one.fit.x[one.fit.n_base :]])
         own, fit = settled(whole, start, candidates, near=True)
         judged = JudgedFit(own.at_rest(), fit, accept_structure(own, fit, base))
-        found.append(judged if fit.cost < one.fit.cost else one)
-    found.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
-    rest = [replace(one, fit=without_slopes(one.fit)) for one in found[1:]]
-    best = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in found[:1]]
-    return best + rest
+        found.append(_at_rest(judged) if fit.cost < one.fit.cost else one)
+    return _best_first(found)
+
+
+def _best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
+    """Return fits, accepted ones first; the slopes of all but the first go."""
+    ranked = sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
+    rest = [replace(one, fit=without_slopes(one.fit)) for one in ranked[1:]]
+    return ranked[:1] + rest
 
 
 def _at_rest(one: JudgedFit) -> JudgedFit:
