@@ -100,6 +100,8 @@ class Descent:
             fits do not need.
         least_drop: drop of the cost below which the descent ends, for a fit that need
             not converge to a fraction of a unit of chi2.
+        dof: degrees of freedom beyond which chi2 is excess; none for those of the
+            samples, which are more where their errors are coherent.
     """
 
     resolution: Resolution = FULL
@@ -108,6 +110,7 @@ class Descent:
     jacobian_resolution: Resolution | None = None
     exact_slopes: bool = True
     least_drop: float = 0.0
+    dof: float | None = None
 
     def slopes(self, problem: FitProblem, x: FloatArray, r: FloatArray) -> FloatArray:
         """Return the Jacobian at x, where the residual is r, shape (n_rows, n)."""
@@ -170,7 +173,7 @@ def descend(
     for k in range(how.iterations):
         ended = max(
             how.least_drop,
-            SEARCH.excess_tolerance * _excess(problem, cost)
+            SEARCH.excess_tolerance * _excess(problem, cost, how.dof)
             + SEARCH.absolute_tolerance,
         )
         near = _Neighbourhood(problem, x, r, j, cost, SEARCH.promised_share * ended)
@@ -225,8 +228,8 @@ def _pruned(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
     )
 
 
-def _excess(problem: FitProblem, cost: float) -> float:
-    return max(cost - _problem_dof(problem), 0.0)
+def _excess(problem: FitProblem, cost: float, dof: float | None) -> float:
+    return max(cost - (_problem_dof(problem) if dof is None else dof), 0.0)
 
 
 class _Neighbourhood:

@@ -143,16 +143,27 @@ def _settled_in(
             rival=None if rival is None else rival * rows,
             exact_slopes=False,
             least_drop=_least_drop(few, candidates, window),
+            dof=_dof(few, window),
         )
         fit = _stated(few, descend(problem, x, how, given))
         x = fit.x
         if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
             break
-        if not near_records(few, fit):
+        if not near_records(few, fit) or _base_is_far_off(few, fit):
             break
         landing, _ = few.landed(fit.base, fit.terms, window.window)
         fit, given = _left_to_next(few, fit)
     return few, fit
+
+
+def _base_is_far_off(few: StructureBench, fit: Fit) -> bool:
+    """Return whether a base is so far off that it is not fitted to all records.
+
+    Its chi2 need not be exact then. With an exact table, each step is cheaper.
+    """
+    if fit.candidates or not few.uncertain:
+        return False
+    return fit.chi2 * few.coherence > STRUCTURE.explaining_chi2 * fit.residual.size
 
 
 def _left_to_next(bench: StructureBench, fit: Fit) -> tuple[Fit, SlopesOnHand | None]:
@@ -172,6 +183,15 @@ def _least_drop(
     if not bench.nonlinear(candidates):
         return 0.0
     return STRUCTURE.law_drop * _rows(bench, window)
+
+
+def _dof(bench: StructureBench, window: Resolution) -> float | None:
+    """Return as how many numbers records count where the modal table is uncertain.
+
+    Frequencies of closed modes make the valleys of the cost long and narrow: a base far
+    off crept along them for minutes.
+    """
+    return _rows(bench, window) / bench.coherence if bench.uncertain else None
 
 
 def _rows(bench: StructureBench, window: Resolution) -> int:
@@ -272,6 +292,7 @@ def _whole(
         iterations=STRUCTURE.whole_iterations,
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
+        dof=_dof(bench, FULL),
     )
     problem = _weighed(bench, candidates, FULL)
     return _stated(bench, descend(problem, start, how, known))

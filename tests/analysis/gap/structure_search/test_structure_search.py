@@ -9,6 +9,7 @@ import pytest
 from hit_campaigns import Hidden, write_campaign
 
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
+from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
@@ -381,3 +382,18 @@ def test_a_sensor_is_fitted_from_the_base_too(found: StructureOutcome) -> None:
     assert met.fit.cost < fit.cost
     assert abs(met.fit.x[-1]) < 0.05
     assert kept.fit.cost == mass.fit.cost
+
+
+def test_with_an_uncertain_table_the_base_is_fitted_from_any_effect(
+    uncertain: StructureBench,
+) -> None:
+    """A mass of many sd is not named where the base explains the hits from there."""
+    heavy = next(c for c in uncertain.candidates if c.effect.name == "added_mass")
+    start = np.append(np.zeros(uncertain.base_sd.size), 0.1)
+    fit = minimise(make_problem(uncertain, (heavy,)), start, iterations=0)
+    assert weakest_amplitude(fit) > STRUCTURE.plain_amplitude
+    best = JudgedFit(uncertain, fit, accept_structure(uncertain, fit, fit))
+    after = needless(best, UNTESTED)
+    assert after is not None
+    assert after.outcome.acceptance.passed
+    assert after.outcome.best.candidates == ()
