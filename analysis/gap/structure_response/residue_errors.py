@@ -52,9 +52,9 @@ def residue_errors(
 ) -> ResidueErrors:
     """Return the errors of responses that errors of the modal table make.
 
-    In phase and in quadrature, each mode has the error of its residue; what the joints
-    give it of damping goes with the squares of the shapes. Modes above the band have
-    the error of their static part.
+    In phase, each mode has the error of its residue; in quadrature only where it mixes
+    with a mode near to it. What the joints give it of damping goes with the squares of
+    the shapes. Modes above the band have the error of their static part.
 
     Args:
         campaign: hits, modes and nominal parameters.
@@ -75,14 +75,28 @@ def residue_errors(
         + (shape_sd * _typical(channels[:, near]) * np.abs(points)[:, None]) ** 2
         + (shape_sd * _typical(points[:, near])[:, None] * np.abs(channels)) ** 2
     )
+    across = np.sqrt(_mixed(channels, points, mixing * _turns(modes)))
     damped = _damping_errors(modes, mixing, shape_sd) * np.abs(residue)
     static = np.sqrt(np.sum((error / modes.omega**2)[..., ~near] ** 2, axis=-1))
     sd = np.concatenate(
-        [error[..., near], error[..., near], damped[..., near], static[..., None]], -1
+        [error[..., near], across[..., near], damped[..., near], static[..., None]], -1
     )
     lines = _lines(modes, near, frame.s)
     rows = np.stack([frame.records(lines * one) for one in frame.force])
     return ResidueErrors(rows, sd)
+
+
+def _turns(modes: RealModes) -> FloatArray:
+    """Return by which share mixing turns the phase of a mode, shape (n, n).
+
+    A stiffness between two modes divides by the difference of their dynamic stiffnesses
+    where one of them resonates, which is real unless their damping differs or they are
+    as near to each other as they are wide.
+    """
+    omega, rate = modes.omega, modes.ratios * modes.omega
+    across = 2.0 * omega[:, None] * np.abs(rate[:, None] - rate)
+    apart = np.abs(omega[:, None] ** 2 - omega**2)
+    return np.asarray(across / np.maximum(np.hypot(across, apart), 1e-300))
 
 
 def _damping_errors(

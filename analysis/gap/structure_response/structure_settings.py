@@ -383,10 +383,18 @@ class StructureSettings:
         60.0,
         "chi2",
         "drop of the cost of an accepted base from which one effect is named where the "
-        "modal table is uncertain",
+        "modal table is uncertain, for sensors in units of chi2/dof",
         "chance reaches 17 in 0.5 % of cases, but errors of a table are not normal: "
         "masses of grams were named at 54 and 45 (seeds 504100 and 520000), where "
         "nothing was missing; right effects had 48 to 1048",
+    )
+    sensor_share: float = numerical(
+        0.4,
+        "of the largest",
+        "drop of a directed test of a sensor beside an accepted base, relative to the "
+        "largest, from which the sensor is fitted to all records",
+        "rivals at the channel at fault had the same drop, others 0.1 and 0.3 of it "
+        "(526001, 526002)",
     )
     outstanding_channel: float = numerical(
         3.0,

@@ -21,7 +21,7 @@ from jointbench.analysis.gap.judgement.amplitudes import (
     weakest_amplitude,
 )
 from jointbench.analysis.gap.judgement.naming import Acceptance
-from jointbench.analysis.gap.judgement.rivals import rivals
+from jointbench.analysis.gap.judgement.rivals import rival_within, rivals
 from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
@@ -39,6 +39,10 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
+from jointbench.analysis.gap.structure_search.sensors_from_base import (
+    of_table,
+    sensors_from_base,
+)
 from jointbench.analysis.gap.structure_search.short_windows import (
     LONGER,
     SHORT,
@@ -55,6 +59,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
+    best_first,
     in_whole_records,
     leaves_much,
 )
@@ -100,23 +105,26 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     before = fit_summary(whole, base)
     # The search needs the chi2 of the base; its slopes take a gigabyte.
     base = without_slopes(base)
+    explains = whole.uncertain and first.excess <= first.allowed
+    sensors = sensors_from_base(whole, base, progress) if explains else []
     if first.passed and not one_effect_takes_much(whole, base):
-        return _complete(whole, base, first, UNTESTED, before)
+        needed = [one for one in sensors if _needed(one, base)]
+        none = _complete(whole, base, first, UNTESTED, before)
+        if not needed:
+            return none
+        judged = _judged(none.outcome, needed)
+        return StructureOutcome(judged, needed[0].bench, whole, before)
     whole = whole.at_rest()
     progress("directed tests")
     few = few.chosen(torques_in_turn(few.campaign.hits))
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
-    explains = whole.uncertain and first.excess <= first.allowed
     explained = whole if explains else None
     done = in_whole_records(bench, few, base, singles, progress, explained=explained)
+    done = best_first([*done, *sensors])
     if first.passed:
-        done = [
-            one
-            for one in done
-            if one.acceptance.passed and takes(one.bench, one.fit, base)
-        ]
+        done = [one for one in done if _needed(one, base)]
     if not done:
         return _complete(whole, base, first, screening, before)
     if found := needless(done[0], screening):
@@ -171,8 +179,13 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         base: fit without effects.
     """
     if bench.uncertain:
-        return base.cost - fit.cost > STRUCTURE.uncertain_drop
+        return base.cost - fit.cost > STRUCTURE.uncertain_drop * of_table(bench, fit)
     return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
+
+
+def _needed(one: JudgedFit, base: Fit) -> bool:
+    """Return whether a fit is accepted, and takes enough beside an accepted base."""
+    return one.acceptance.passed and takes(one.bench, one.fit, base)
 
 
 def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None:
@@ -312,7 +325,9 @@ def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
     fits.sort(key=lambda f: score(best.bench, f))
-    level = tuple(rivals(best.bench, fits)) if best.acceptance.passed else (best.fit,)
+    level = (best.fit,)
+    if best.acceptance.passed:
+        level = tuple(_alike_by_size(best, rivals(best.bench, fits)))
     return replace(
         none,
         bench=best.bench,
@@ -321,6 +336,18 @@ def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
         ranked=tuple(fits),
         level=level,
     )
+
+
+def _alike_by_size(best: JudgedFit, level: Sequence[Fit]) -> list[Fit]:
+    """Return rivals without those that what is left of the channel tells apart."""
+    first, bench = level[0], best.bench
+    limit = rival_within(first, bench.policy) * of_table(bench, first)
+    return [
+        one
+        for one in level
+        if {c.site for c in one.candidates} != {c.site for c in first.candidates}
+        or score(bench, one) - score(bench, first) < limit
+    ]
 
 
 def _alike(best: JudgedFit, fit: Fit) -> Fit:

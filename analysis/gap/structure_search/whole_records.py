@@ -88,7 +88,7 @@ def in_whole_records(
         judged = accept_structure(whole, found, base)
         done.append(JudgedFit(whole.at_rest(), found, judged))
         del whole, found
-        done = _best_first(done)
+        done = best_first(done)
     if explained is not None:
         done = [_at_rest(one) for one in done]
         done = sensors_beside_base(explained, base, done, progress)
@@ -121,12 +121,18 @@ def sensors_beside_base(
         own, fit = settled(whole, start, candidates, near=True)
         judged = JudgedFit(own.at_rest(), fit, accept_structure(own, fit, base))
         found.append(_at_rest(judged) if fit.cost < one.fit.cost else one)
-    return _best_first(found)
+    return best_first(found)
 
 
-def _best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
-    """Return fits, accepted ones first; the slopes of all but the first go."""
+def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
+    """Return fits, accepted ones first; the slopes of all but the first go.
+
+    Args:
+        done: fits, one of them for each explanation or more; the best one counts.
+    """
     ranked = sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
+    best = {labels_of(one.fit.candidates): one for one in reversed(ranked)}
+    ranked = [one for one in ranked if best[labels_of(one.fit.candidates)] is one]
     rest = [replace(one, fit=without_slopes(one.fit)) for one in ranked[1:]]
     return ranked[:1] + rest
 

@@ -28,6 +28,10 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
+from jointbench.analysis.gap.structure_search.sensors_from_base import (
+    of_table,
+    sensors_from_base,
+)
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
 from jointbench.analysis.gap.structure_search.sought_frequencies import sought
 from jointbench.analysis.gap.structure_search.structure_diagnosis import (
@@ -397,3 +401,22 @@ def test_with_an_uncertain_table_the_base_is_fitted_from_any_effect(
     assert after is not None
     assert after.outcome.acceptance.passed
     assert after.outcome.best.candidates == ()
+
+
+def test_a_gain_is_found_beside_a_base_that_explains_the_hits(
+    uncertain: StructureBench,
+) -> None:
+    """One channel that reads 15 % more; nothing is fitted where none does."""
+    _, base = settled(uncertain, np.zeros(uncertain.base_sd.size), (), near=True)
+    assert sensors_from_base(uncertain, base, lambda line: None) == []
+    hits = uncertain.campaign.hits
+    louder = hits.response.copy()
+    louder[:, 2] *= 1.15
+    campaign = replace(uncertain.campaign, hits=replace(hits, response=louder))
+    faulty = replace(uncertain, campaign=campaign, kept={})
+    bench, base = settled(faulty, base.base, (), near=True)
+    best, *_ = sensors_from_base(bench, base, lambda line: None)
+    (found,) = best.fit.candidates
+    assert found.site.name == campaign.bodies.channels[2]
+    assert takes(best.bench, best.fit, base)
+    assert of_table(best.bench, best.fit) < 1.0

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Faults of sensors beside a base that explains the hits.
+
+A sensor at fault changes its own channel, in all modes alike, and leaves the structure
+as it is. Errors of a table are those of the structure and change all channels, mode by
+mode. So a fault is seen in whole records beside an accepted base, in which it leaves
+chi2 inconspicuous, and what is left of the records shows how large errors of the table
+are.
+"""
+
+import numpy as np
+
+from jointbench.analysis.gap.model.effect import words_of
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
+from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import screen
+from jointbench.analysis.gap.search.selection_round import Progress
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.records_of_search import (
+    one_of_each,
+    torques_in_turn,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import (
+    accept_structure,
+    settled,
+)
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, best_first
+
+
+def sensors_from_base(
+    whole: StructureBench, base: Fit, progress: Progress
+) -> list[JudgedFit]:
+    """Return fits of sensors at fault from the base, best first; none without a sign.
+
+    Args:
+        whole: all records, on which the base was found and explains them.
+        base: fit without effects.
+        progress: receives one line for each step.
+    """
+    progress("directed tests of sensors")
+    every = one_of_each(whole.campaign.hits)
+    own = whole.chosen(every)
+    own = whole.chosen(every[torques_in_turn(own.campaign.hits)])
+    window = Resolution(STRUCTURE.approach_windows[-1])
+    near = minimise(make_problem(own, ()), base.x, window, iterations=2)
+    size = min(near.chi2 * own.coherence / near.residual.size, 1.0)
+    sensors = [c for c in own.candidates if c.site.kind == "channel"]
+    found = screen(own, near, sensors, resolution=window)
+    if found.largest < found.threshold * size:
+        return []
+    done: list[JudgedFit] = []
+    for candidate in found.leaders(STRUCTURE.whole_fits):
+        test = found.best(candidate, 1)[0]
+        if test.drop < STRUCTURE.sensor_share * found.largest:
+            break
+        progress(f"{words_of((candidate,))} from the base")
+        start = np.concatenate([base.base, test.coordinates])
+        bench, fit = settled(whole, start, (candidate,), near=True)
+        judged = accept_structure(bench, fit, base)
+        done.append(JudgedFit(bench.at_rest(), without_slopes(fit), judged))
+    done = best_first(done)
+    best = done[0]
+    slopes = minimise(
+        make_problem(best.bench, best.fit.candidates), best.fit.x, FULL, iterations=0
+    )
+    return [JudgedFit(best.bench, slopes, best.acceptance), *done[1:]]
+
+
+def of_table(bench: StructureBench, fit: Fit) -> float:
+    """Return the size of errors of the table in a fit of sensors, 1 in any other.
+
+    Args:
+        bench: with an uncertain table.
+        fit: with effects.
+    """
+    if not bench.uncertain or any(c.site.kind != "channel" for c in fit.candidates):
+        return 1.0
+    return float(min(fit.chi2 * bench.coherence / fit.residual.size, 1.0))
