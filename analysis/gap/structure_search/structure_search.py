@@ -325,7 +325,7 @@ def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
     fits.sort(key=lambda f: score(best.bench, f))
-    level = (best.fit,)
+    level: tuple[Fit, ...] = (best.fit,)
     if best.acceptance.passed:
         level = tuple(_alike_by_size(best, rivals(best.bench, fits)))
     return replace(
@@ -339,7 +339,7 @@ def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
 
 
 def _alike_by_size(best: JudgedFit, level: Sequence[Fit]) -> list[Fit]:
-    """Return rivals without those that what is left of the channel tells apart."""
+    """Return rivals, those at the same channel in units of what is left there."""
     first, bench = level[0], best.bench
     limit = rival_within(first, bench.policy) * of_table(bench, first)
     return [
