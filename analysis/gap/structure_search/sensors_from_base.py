@@ -11,7 +11,7 @@ are.
 import numpy as np
 
 from jointbench.analysis.gap.model.effect import words_of
-from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -34,6 +34,8 @@ def sensors_from_base(
     whole: StructureBench, base: Fit, progress: Progress
 ) -> list[JudgedFit]:
     """Return fits of sensors at fault from the base, best first; none without a sign.
+
+    They have no slopes, so that a search may follow.
 
     Args:
         whole: all records, on which the base was found and explains them.
@@ -61,12 +63,7 @@ def sensors_from_base(
         bench, fit = settled(whole, start, (candidate,), near=True)
         judged = accept_structure(bench, fit, base)
         done.append(JudgedFit(bench.at_rest(), without_slopes(fit), judged))
-    done = best_first(done)
-    best = done[0]
-    slopes = minimise(
-        make_problem(best.bench, best.fit.candidates), best.fit.x, FULL, iterations=0
-    )
-    return [JudgedFit(best.bench, slopes, best.acceptance), *done[1:]]
+    return best_first(done)
 
 
 def of_table(bench: StructureBench, fit: Fit) -> float:

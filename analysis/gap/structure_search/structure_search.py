@@ -62,6 +62,7 @@ from jointbench.analysis.gap.structure_search.whole_records import (
     best_first,
     in_whole_records,
     leaves_much,
+    with_slopes,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)
@@ -112,6 +113,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         none = _complete(whole, base, first, UNTESTED, before)
         if not needed:
             return none
+        needed = _with_slopes(needed)
         judged = _judged(none.outcome, needed)
         return StructureOutcome(judged, needed[0].bench, whole, before)
     whole = whole.at_rest()
@@ -127,6 +129,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         done = [one for one in done if _needed(one, base)]
     if not done:
         return _complete(whole, base, first, screening, before)
+    done = _with_slopes(done)
     if found := needless(done[0], screening):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
@@ -181,6 +184,12 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
     if bench.uncertain:
         return base.cost - fit.cost > STRUCTURE.uncertain_drop * of_table(bench, fit)
     return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
+
+
+def _with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
+    """Return fits, the first one with its slopes, which a verdict needs."""
+    first = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in done[:1]]
+    return [*first, *done[1:]]
 
 
 def _needed(one: JudgedFit, base: Fit) -> bool:
