@@ -3,9 +3,8 @@
 
 A sensor at fault changes its own channel, in all modes alike, and leaves the structure
 as it is. Errors of a table are those of the structure and change all channels, mode by
-mode. So a fault is seen in whole records beside an accepted base, in which it leaves
-chi2 inconspicuous, and what is left of the records shows how large errors of the table
-are.
+mode. So a fault is seen in 60 ms beside an accepted base, in which it leaves chi2
+inconspicuous, and what is left of the records shows how large errors of the table are.
 """
 
 import numpy as np
@@ -20,11 +19,13 @@ from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.records_of_search import (
-    one_of_each,
     torques_in_turn,
 )
-from jointbench.analysis.gap.structure_search.structure_fits import (
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import (
+    chi2_per_dof,
     settled,
 )
 from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, best_first
@@ -43,12 +44,10 @@ def sensors_from_base(
         progress: receives one line for each step.
     """
     progress("directed tests of sensors")
-    every = one_of_each(whole.campaign.hits)
-    own = whole.chosen(every)
-    own = whole.chosen(every[torques_in_turn(own.campaign.hits)])
+    own = whole.chosen(torques_in_turn(whole.campaign.hits))
     window = Resolution(STRUCTURE.approach_windows[-1])
     near = minimise(make_problem(own, ()), base.x, window, iterations=2)
-    size = min(near.chi2 * own.coherence / near.residual.size, 1.0)
+    size = min(chi2_per_dof(own, near), 1.0)
     sensors = [c for c in own.candidates if c.site.kind == "channel"]
     found = screen(own, near, sensors, resolution=window)
     if found.largest < found.threshold * size:
@@ -75,4 +74,4 @@ def of_table(bench: StructureBench, fit: Fit) -> float:
     """
     if not bench.uncertain or any(c.site.kind != "channel" for c in fit.candidates):
         return 1.0
-    return float(min(fit.chi2 * bench.coherence / fit.residual.size, 1.0))
+    return min(chi2_per_dof(bench, fit), 1.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fits of hits on bolted bodies to whole records, and their acceptance.
+"""Fits of hits on bolted bodies to whole records.
 
 Records are approached on one of each condition, window by window, each hit met where it
 landed; only then are all of them fitted.
@@ -13,7 +13,6 @@ import numpy as np
 from scipy.special import ndtri
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
     FINE,
@@ -29,11 +28,9 @@ from jointbench.analysis.gap.search.descent import (
     minimise,
 )
 from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
-from jointbench.analysis.gap.structure_bench.beyond_table import beyond_table
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
-from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -114,9 +111,19 @@ def with_errors_found(layout: BaseLayout, base: Fit, *, explains: bool) -> BaseL
     return replace(layout, sd=sd)
 
 
+def chi2_per_dof(bench: StructureBench, fit: Fit) -> float:
+    """Return chi2 of a fit in a window, over the numbers as which its samples count.
+
+    Args:
+        bench: on which it was found.
+        fit: with or without effects.
+    """
+    return float(fit.chi2 * bench.coherence / fit.residual.size)
+
+
 def near_records(bench: StructureBench, fit: Fit) -> bool:
     """Return whether a fit is so near the records that they show where hits landed."""
-    return fit.chi2 * bench.coherence < STRUCTURE.near_chi2 * fit.residual.size
+    return chi2_per_dof(bench, fit) < STRUCTURE.near_chi2
 
 
 def _settled_in(
@@ -163,7 +170,7 @@ def _base_is_far_off(few: StructureBench, fit: Fit) -> bool:
     """
     if fit.candidates or not few.uncertain:
         return False
-    return fit.chi2 * few.coherence > STRUCTURE.explaining_chi2 * fit.residual.size
+    return chi2_per_dof(few, fit) > STRUCTURE.explaining_chi2
 
 
 def _left_to_next(bench: StructureBench, fit: Fit) -> tuple[Fit, SlopesOnHand | None]:
@@ -332,74 +339,3 @@ def _stated(bench: StructureBench, fit: Fit) -> Fit:
     """Return a fit with the priors as stated."""
     problem = make_problem(bench, fit.candidates)
     return replace(fit, prior=problem.prior, cost=fit.chi2 + problem.penalty(fit.x))
-
-
-def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
-    """Judge a fit of whole records by its chi2, its base and where hits landed.
-
-    A base can take over a loose bolt at an inconspicuous chi2 if one of its parameters
-    deviates by many sd, and the aim of each hit a mark that all of them missed, so chi2
-    alone does not decide.
-
-    Args:
-        bench: on which the fit was found.
-        fit: to be judged.
-        base: fit without effects.
-    """
-    dof = bench.blocks.dof / bench.coherence
-    chi2 = fit.chi2 / dof
-    policy = bench.policy
-    allowed = policy.floor_chi2
-    if fit.candidates:
-        allowed += policy.floor_chi2_share * max(base.chi2 / dof - 1.0, 0.0)
-    deviations = np.abs(fit.prior_deviations)
-    deviation = float(deviations.max())
-    reason = ""
-    if chi2 > allowed:
-        reason = f"chi2/dof is {chi2:.4g}, the limit is {allowed:.4g}"
-    elif deviation > policy.floor_prior_limit:
-        worst = bench.base_names[int(np.argmax(deviations))]
-        reason = f"{worst} is {deviation:.1f} sd from its nominal value"
-    else:
-        landing, _ = bench.landed(fit.base, fit.terms)
-        common, error = STRUCTURE.mark_sd, policy.floor_prior_limit
-        reason = mark_missed(bench.campaign, landing, common, error)
-        if bench.uncertain and not (reason or fit.candidates):
-            reason = _no_linear_structure(bench, fit)
-        if bench.uncertain and not reason:
-            reason = _channel_that_stands_out(bench, fit)
-    return Acceptance(
-        passed=not reason,
-        reason=reason,
-        excess=chi2 - 1.0,
-        allowed=allowed - 1.0,
-        remaining=None,
-        remaining_allowed=0.0,
-        unexplained=bool(reason),
-        left=None,
-    )
-
-
-def _no_linear_structure(bench: StructureBench, fit: Fit) -> str:
-    """Return why no modal table explains what a fit leaves, empty if one may."""
-    level, chi2 = beyond_table(bench, fit)
-    if chi2 < bench.policy.floor_chi2:
-        return ""
-    share = STRUCTURE.table_floor * np.sqrt(chi2)
-    return f"at {level}, {share:.2%} of the peak is due to no error of the modal table"
-
-
-def _channel_that_stands_out(bench: StructureBench, fit: Fit) -> str:
-    """Return which channel is left unexplained beside the others, empty if none is.
-
-    Errors of a table touch all channels. Of a sensor that is not where or as stated,
-    only its own channel shows it; one of twelve moves the chi2 of all by little.
-    """
-    squares = fit.residual.reshape(bench.blocks.shape) ** 2
-    chi2 = np.mean(squares, axis=(0, 2)) * bench.coherence
-    worst, typical = int(np.argmax(chi2)), float(np.median(chi2))
-    limit = max(bench.policy.floor_chi2, STRUCTURE.outstanding_channel * typical)
-    if chi2[worst] <= limit:
-        return ""
-    name = bench.campaign.bodies.channels[worst]
-    return f"{name} leaves chi2/dof {chi2[worst]:.2g}, a typical channel {typical:.2g}"

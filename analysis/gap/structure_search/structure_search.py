@@ -50,9 +50,12 @@ from jointbench.analysis.gap.structure_search.short_windows import (
     tested,
 )
 from jointbench.analysis.gap.structure_search.sought_frequencies import sought
-from jointbench.analysis.gap.structure_search.structure_fits import (
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import (
     approached,
+    chi2_per_dof,
     fitted_finely,
     settled,
     with_errors_found,
@@ -60,9 +63,9 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     best_first,
+    first_with_slopes,
     in_whole_records,
     leaves_much,
-    with_slopes,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)
@@ -113,7 +116,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         none = _complete(whole, base, first, UNTESTED, before)
         if not needed:
             return none
-        needed = _with_slopes(needed)
+        needed = first_with_slopes(needed)
         judged = _judged(none.outcome, needed)
         return StructureOutcome(judged, needed[0].bench, whole, before)
     whole = whole.at_rest()
@@ -129,7 +132,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         done = [one for one in done if _needed(one, base)]
     if not done:
         return _complete(whole, base, first, screening, before)
-    done = _with_slopes(done)
+    done = first_with_slopes(done)
     if found := needless(done[0], screening):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
@@ -156,9 +159,7 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
         whole: all records.
         base: fit without effects that is accepted.
     """
-    every = one_of_each(whole.campaign.hits)
-    own = whole.chosen(every)
-    own = whole.chosen(every[torques_in_turn(own.campaign.hits)])
+    own = whole.chosen(torques_in_turn(whole.campaign.hits))
     near = minimise(make_problem(own, ()), base.x, LONGER, iterations=4)
     aimed = {e.effect.name for e in own.entries if e.aimed}
     linear = [
@@ -184,12 +185,6 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
     if bench.uncertain:
         return base.cost - fit.cost > STRUCTURE.uncertain_drop * of_table(bench, fit)
     return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
-
-
-def _with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
-    """Return fits, the first one with its slopes, which a verdict needs."""
-    first = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in done[:1]]
-    return [*first, *done[1:]]
 
 
 def _needed(one: JudgedFit, base: Fit) -> bool:
@@ -312,7 +307,7 @@ def _base_in_whole_records(
         beyond, other = approached(few, further, ())
         few, fit = (beyond, other) if other.cost < fit.cost else (few, fit)
     fit = without_slopes(fit)
-    chi2 = fit.chi2 * few.coherence / fit.residual.size
+    chi2 = chi2_per_dof(few, fit)
     explains = chi2 < few.policy.floor_chi2
     layout = with_errors_found(bench.layout, fit, explains=explains)
     bench = replace(bench, layout=layout)
@@ -324,7 +319,7 @@ def _base_in_whole_records(
 
 def _may_have_lost_a_mode(few: StructureBench, fit: Fit) -> bool:
     """Return whether a base leaves more than usual, but less than an effect does."""
-    chi2 = fit.chi2 * few.coherence / fit.residual.size
+    chi2 = chi2_per_dof(few, fit)
     usual = STRUCTURE.sought_chi2 * few.policy.floor_chi2
     return few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2
 

@@ -17,8 +17,10 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.continued_laws import continued
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
-from jointbench.analysis.gap.structure_search.structure_fits import (
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import (
     in_full,
     in_windows,
     near_records,
@@ -92,8 +94,7 @@ def in_whole_records(
     if explained is not None:
         done = [_at_rest(one) for one in done]
         done = sensors_beside_base(explained, base, done, progress)
-    best = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in done[:1]]
-    return best + done[1:]
+    return first_with_slopes(done)
 
 
 def sensors_beside_base(
@@ -122,6 +123,16 @@ def sensors_beside_base(
         judged = JudgedFit(own.at_rest(), fit, accept_structure(own, fit, base))
         found.append(_at_rest(judged) if fit.cost < one.fit.cost else one)
     return best_first(found)
+
+
+def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
+    """Return fits, the first one with its slopes, which a verdict needs.
+
+    Args:
+        done: fits, best first.
+    """
+    first = [replace(one, fit=with_slopes(one.bench, one.fit)) for one in done[:1]]
+    return [*first, *done[1:]]
 
 
 def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:

@@ -15,7 +15,9 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_search.structure_fits import accept_structure
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 HARD = 500.0

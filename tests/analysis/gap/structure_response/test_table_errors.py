@@ -12,10 +12,12 @@ from jointbench.analysis.gap.structure_response.base_layout import (
 )
 from jointbench.analysis.gap.structure_response.closed_modes import real_modes
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_response.hit_frames import hit_frame
 from jointbench.analysis.gap.structure_response.joint_state import (
     JointState,
     state_of,
 )
+from jointbench.analysis.gap.structure_response.residue_errors import residue_errors
 from jointbench.analysis.gap.structure_response.table_errors import (
     tuned_again,
     tuned_modes,
@@ -101,3 +103,14 @@ def test_an_exact_table_leaves_no_frequency_open() -> None:
     layout = base_layout(MADE.bodies, NOMINAL)
     state = state_of(MADE.bodies, NOMINAL, layout, np.zeros(layout.sd.size))
     assert tuned_modes(MADE, state) is None
+
+
+def test_errors_of_stiffness_leave_residues_almost_real() -> None:
+    """Modes apart from each other have a tenth of the error in quadrature, or less."""
+    made, _, state = uncertain()
+    frame = hit_frame(made.hits, made.hits.force.shape[1])
+    sd = residue_errors(made, state, frame).sd
+    modes = (sd.shape[-1] - 1) // 3
+    in_phase, across = sd[..., :modes], sd[..., modes : 2 * modes]
+    assert np.all(across <= in_phase)
+    assert 0.0 < np.median(across / in_phase) < 0.1

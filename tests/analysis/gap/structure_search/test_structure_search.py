@@ -34,11 +34,13 @@ from jointbench.analysis.gap.structure_search.sensors_from_base import (
 )
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
 from jointbench.analysis.gap.structure_search.sought_frequencies import sought
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
 from jointbench.analysis.gap.structure_search.structure_diagnosis import (
     diagnose_structure,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import (
-    accept_structure,
     in_windows,
     settled,
     with_errors_found,
