@@ -46,7 +46,13 @@ def plan_file(folder: Path) -> Path:
 
 # WCAG 2.2: 4.5:1 for every text on the first ground below it that is not transparent.
 ILLEGIBLE = """() => {
-  const numbers = text => text.match(/[0-9.]+/g).map(Number);
+  // A mixture of colours reads `color(srgb 0.8 0.9 1)`, others `rgb(204, 230, 255)`.
+  const numbers = text => {
+    if (!/^(rgba?[(]|color[(]srgb )/.test(text)) throw new Error(`colour ${text}`);
+    const unit = text.startsWith('color') ? 255 : 1;
+    const [r, g, b, ...a] = text.match(/[0-9.]+(e-[0-9]+)?/g).map(Number);
+    return [unit * r, unit * g, unit * b, ...a];
+  };
   const part = v => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
   const light = ([r, g, b]) => 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
   const ground = e => {
@@ -64,7 +70,7 @@ ILLEGIBLE = """() => {
     if (!words || !e.checkVisibility() || e.closest('[disabled]')) continue;
     const style = getComputedStyle(e);
     const ink = light(numbers(e.ownerSVGElement ? style.fill : style.color));
-    const paper = light(numbers(ground(e).slice(0, 3).join()));
+    const paper = light(ground(e));
     const ratio = (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05);
     if (ratio < 4.5) found.push(`${ratio.toFixed(1)} ${words}`);
   }
@@ -159,7 +165,8 @@ def legible(page: "Page") -> None:
             # Plots follow the window a moment later.
             with suppress(Exception):
                 page.wait_for_function(f"() => !({ILLEGIBLE})().length", timeout=SOON)
-            assert page.evaluate(ILLEGIBLE) == [], (page.url, scheme, width)
+            found = page.evaluate(ILLEGIBLE)
+            assert not found, (page.url, scheme, width, found)
     page.emulate_media(color_scheme="light")
     if usual is not None:
         page.set_viewport_size(usual)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from bench_runs import ILLEGIBLE, legible
 from desk_files import COLUMNS, write_frfs
 
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
@@ -19,9 +20,13 @@ from jointbench.station.desk.desk_subject import DeskRequest, desk_subjects
 from jointbench.station.results.results_modes import read_run
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Route
 
 SCRIPT = "<img src=x onerror=alert(1)>"
+# One value of each shade below the darkest; what is measured seldom has them.
+SHADES = [[1.0, 0.3, 0.5], [0.3, 1.0, 0.7], [0.5, 0.7, 1.0]]
+INKED = """document.querySelector('table.mac td').style.background =
+  'color-mix(in srgb, var(--ink) 60%, var(--paper))'"""
 Serve = Callable[[Sequence[ScreenPart]], AbstractContextManager[Any]]
 
 
@@ -179,3 +184,24 @@ def test_every_screen_of_the_desk_is_reached_by_its_link(
             ".then(answer => answer.text())"
         )
         assert "a choice is one of" in refused
+
+
+def shaded(route: "Route") -> None:
+    """Answer with the shapes as they are and an AutoMAC of every shade."""
+    answer = route.fetch()
+    route.fulfill(response=answer, json={**answer.json(), "mac": SHADES})
+
+
+def test_numbers_on_every_shade_of_the_mac_are_legible(
+    page: "Page", serve: Serve, tmp_path: Path
+) -> None:
+    """The shades are mixtures of colours; what is too dark for ink is noticed."""
+    board = opened_board(tmp_path / "frfs")
+    with serve((desk_part(board),)) as screen:
+        page.route("**/desk/0/shapes", shaded)
+        page.goto(screen.access.link("/shapes"))
+        for shade in (1, 2, 3):
+            page.locator(f"table.mac td.mac-{shade}").first.wait_for()
+        legible(page)
+        page.evaluate(INKED)
+        assert [one.split()[1] for one in page.evaluate(ILLEGIBLE)] == ["1.00"]
