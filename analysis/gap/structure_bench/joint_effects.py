@@ -195,6 +195,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
         with_torques,
         _by_torque,
         always=True,
+        by_torque=True,
     ),
     one_parameter(
         "preload_damping",
@@ -204,6 +205,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
         with_torques,
         _damp_by_torque,
         always=True,
+        by_torque=True,
     ),
 )
 """Linear effects of the joint."""

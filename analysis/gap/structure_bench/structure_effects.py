@@ -36,6 +36,7 @@ class StructureEffect:
             where the hits of the point landed.
         alone: True if it changes the modes, so that no other effect is fitted beside
             it.
+        by_torque: True if it acts differently at each torque of the bolts.
     """
 
     effect: Effect
@@ -46,6 +47,7 @@ class StructureEffect:
     by_frequency: bool = False
     aimed: bool = False
     alone: bool = False
+    by_torque: bool = False
 
 
 def far_starts(first: float, last: float) -> tuple[float, ...]:
@@ -72,6 +74,7 @@ def one_parameter(
     change: Change,
     *,
     always: bool = False,
+    by_torque: bool = False,
 ) -> StructureEffect:
     """Return a linear effect of one parameter.
 
@@ -83,9 +86,10 @@ def one_parameter(
         sites: where it can act.
         change: adds it to a state.
         always: True if fits start from it whatever the directed tests find.
+        by_torque: True if it acts differently at each torque of the bolts.
     """
     effect = Effect(name, family, (parameter,), source)
-    return StructureEffect(effect, sites, change, always=always)
+    return StructureEffect(effect, sites, change, always=always, by_torque=by_torque)
 
 
 def structure_candidates(

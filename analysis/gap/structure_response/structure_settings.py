@@ -388,13 +388,28 @@ class StructureSettings:
         "masses of grams were named at 54 and 45 (seeds 504100 and 520000), where "
         "nothing was missing; right effects had 48 to 1048",
     )
-    sensor_share: float = numerical(
+    test_share: float = numerical(
         0.4,
         "of the largest",
-        "drop of a directed test of a sensor beside an accepted base, relative to the "
-        "largest, from which the sensor is fitted to all records",
+        "drop of a directed test beside an accepted base, relative to the largest, "
+        "from which the effect is fitted to all records",
         "rivals at the channel at fault had the same drop, others 0.1 and 0.3 of it "
         "(526001, 526002)",
+    )
+    difference_drop: float = numerical(
+        3.0,
+        "chi2",
+        "drop by an effect, with errors of an uncertain modal table of any size, from "
+        "which it is sought and named beside an accepted base: of what differs between "
+        "hits of a point",
+        "14 complete benches: at most 0.17; a preload exponent of damping had 16 "
+        "(536000), a damping law 134 (551002)",
+    )
+    any_error: float = numerical(
+        1e3,
+        "of the sd",
+        "factor by which errors of a modal table are of any size",
+        "far above what a table can be off by, far below the inverse of rounding",
     )
     outstanding_channel: float = numerical(
         3.0,

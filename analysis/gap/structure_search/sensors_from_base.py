@@ -7,27 +7,20 @@ mode. So a fault is seen in 60 ms beside an accepted base, in which it leaves ch
 inconspicuous, and what is left of the records shows how large errors of the table are.
 """
 
-import numpy as np
-
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
-from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.fit_from_base import fit_from_base
 from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
-from jointbench.analysis.gap.structure_search.structure_acceptance import (
-    accept_structure,
-)
-from jointbench.analysis.gap.structure_search.structure_fits import (
-    chi2_per_dof,
-    settled,
-)
+from jointbench.analysis.gap.structure_search.structure_fits import chi2_per_dof
 from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, best_first
 
 
@@ -55,13 +48,10 @@ def sensors_from_base(
     done: list[JudgedFit] = []
     for candidate in found.leaders(STRUCTURE.whole_fits):
         test = found.best(candidate, 1)[0]
-        if test.drop < STRUCTURE.sensor_share * found.largest:
+        if test.drop < STRUCTURE.test_share * found.largest:
             break
         progress(f"{words_of((candidate,))} from the base")
-        start = np.concatenate([base.base, test.coordinates])
-        bench, fit = settled(whole, start, (candidate,), near=True)
-        judged = accept_structure(bench, fit, base)
-        done.append(JudgedFit(bench.at_rest(), without_slopes(fit), judged))
+        done.append(fit_from_base(whole, own, base, test, window))
     return best_first(done)
 
 

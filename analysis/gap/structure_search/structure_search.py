@@ -22,7 +22,7 @@ from jointbench.analysis.gap.judgement.amplitudes import (
 )
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rival_within, rivals
-from jointbench.analysis.gap.model.effect import labels_of, words_of
+from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -31,6 +31,11 @@ from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.differences_from_base import (
+    differences_from_base,
+    differs,
+    takes_differences,
+)
 from jointbench.analysis.gap.structure_search.fit_summary import (
     FitSummary,
     fit_summary,
@@ -110,9 +115,9 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     # The search needs the chi2 of the base; its slopes take a gigabyte.
     base = without_slopes(base)
     explains = whole.uncertain and first.excess <= first.allowed
-    sensors = sensors_from_base(whole, base, progress) if explains else []
+    from_base = _from_base(whole, base, progress) if explains else []
     if first.passed and not one_effect_takes_much(whole, base):
-        needed = [one for one in sensors if _needed(one, base)]
+        needed = [one for one in from_base if _needed(one, base)]
         none = _complete(whole, base, first, UNTESTED, before)
         if not needed:
             return none
@@ -125,15 +130,15 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
-    explained = whole if explains else None
-    done = in_whole_records(bench, few, base, singles, progress, explained=explained)
-    done = best_first([*done, *sensors])
+    done = in_whole_records(bench, few, base, singles, progress)
+    done = best_first([*done, *from_base])
     if first.passed:
         done = [one for one in done if _needed(one, base)]
     if not done:
         return _complete(whole, base, first, screening, before)
     done = first_with_slopes(done)
-    if found := needless(done[0], screening):
+    far_off = chi2_per_dof(whole, base) > STRUCTURE.explaining_chi2
+    if found := needless(done[0], screening, far_off=far_off):
         return found
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
@@ -153,7 +158,8 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
     The limit of chi2 is wide, since it must hold for errors of the model. They resemble
     no effect, so one that takes a good share of them is worth a search. Marks are left
     to the mean of where hits landed. Errors of an uncertain modal table are weighed as
-    what they are, so what takes more than chance would is worth a search there.
+    what they are, so what takes more than chance would is worth a search there; what
+    no table imitates has tests of its own.
 
     Args:
         whole: all records.
@@ -161,17 +167,29 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
     """
     own = whole.chosen(torques_in_turn(whole.campaign.hits))
     near = minimise(make_problem(own, ()), base.x, LONGER, iterations=4)
+    if whole.uncertain:
+        others = [c for c in own.candidates if not _tested_from_base(own, c)]
+        found = screen(own, near, others, resolution=LONGER)
+        return found.largest > found.threshold
     aimed = {e.effect.name for e in own.entries if e.aimed}
     linear = [
         c
         for c in own.candidates
         if c.effect.name not in aimed and not own.nonlinear((c,))
     ]
-    if whole.uncertain:
-        found = screen(own, near, own.candidates, resolution=LONGER)
-        return found.largest > found.threshold
     found = screen(own, near, linear, resolution=LONGER)
     return found.largest > STRUCTURE.taken_share * near.chi2
+
+
+def _tested_from_base(bench: StructureBench, candidate: Candidate) -> bool:
+    """Return whether `_from_base` tests an effect."""
+    return candidate.site.kind == "channel" or differs(bench, candidate)
+
+
+def _from_base(whole: StructureBench, base: Fit, progress: Progress) -> list[JudgedFit]:
+    """Return fits of what no modal table imitates from an explaining base."""
+    sensors = sensors_from_base(whole, base, progress)
+    return [*sensors, *differences_from_base(whole, base, progress)]
 
 
 def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
@@ -183,7 +201,8 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         base: fit without effects.
     """
     if bench.uncertain:
-        return base.cost - fit.cost > STRUCTURE.uncertain_drop * of_table(bench, fit)
+        least = STRUCTURE.uncertain_drop * of_table(bench, fit)
+        return base.cost - fit.cost > least or takes_differences(bench, fit, base)
     return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
 
 
@@ -257,20 +276,25 @@ def _complete(
     return StructureOutcome(none, bench, bench, before)
 
 
-def needless(best: JudgedFit, screening: Screening) -> StructureOutcome | None:
+def needless(
+    best: JudgedFit, screening: Screening, *, far_off: bool = False
+) -> StructureOutcome | None:
     """Return the outcome without an effect where the base needs none from there.
 
     A fit has found the records by its base, which is a further start for the base
     alone: from its nominal values, it may have ended beside its minimum. What the base
     does not explain either is no reason to name an effect that is nearly off. With an
-    uncertain table, the base may explain the hits from the fit of any effect.
+    uncertain table, the base may explain the hits from the fit of any effect, unless it
+    was far off.
 
     Args:
         best: fit with effects, the best one.
         screening: directed tests that led to it.
+        far_off: whether the base was.
     """
     amplitude = weakest_amplitude(best.fit)
-    if amplitude >= STRUCTURE.plain_amplitude and not best.bench.uncertain:
+    may_explain = best.bench.uncertain and not far_off
+    if amplitude >= STRUCTURE.plain_amplitude and not may_explain:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
     judged = accept_structure(bench, base, base)

@@ -47,8 +47,6 @@ def in_whole_records(
     base: Fit,
     carried: Sequence[Fit],
     progress: Progress,
-    *,
-    explained: StructureBench | None = None,
 ) -> list[JudgedFit]:
     """Fit the best candidates to whole records, accepted ones first.
 
@@ -60,8 +58,6 @@ def in_whole_records(
         base: fit without effects.
         carried: fits in the longer window, best first.
         progress: receives one line for each fit.
-        explained: all records as the base explains them, from which sensors are fitted
-            too.
     """
     few = replace(few, reach=bench.reach)
     met = _met_in_windows(few, carried, progress)
@@ -91,38 +87,7 @@ def in_whole_records(
         done.append(JudgedFit(whole.at_rest(), found, judged))
         del whole, found
         done = best_first(done)
-    if explained is not None:
-        done = [_at_rest(one) for one in done]
-        done = sensors_beside_base(explained, base, done, progress)
     return first_with_slopes(done)
-
-
-def sensors_beside_base(
-    whole: StructureBench, base: Fit, done: Sequence[JudgedFit], progress: Progress
-) -> list[JudgedFit]:
-    """Return the fits, those of sensors from the base where that is nearer, best first.
-
-    A sensor at fault leaves the structure as it is, and so a base that explains most of
-    the records, which a descent from short windows need not find again.
-
-    Args:
-        whole: all records, on which the base was found.
-        base: fit without effects.
-        done: fits with effects, accepted ones first.
-        progress: receives one line for each fit.
-    """
-    found: list[JudgedFit] = []
-    for one in done:
-        candidates = one.fit.candidates
-        if any(c.site.kind != "channel" for c in candidates):
-            found.append(one)
-            continue
-        progress(f"{words_of(candidates)} from the base")
-        start = np.concatenate([base.base, one.fit.x[one.fit.n_base :]])
-        own, fit = settled(whole, start, candidates, near=True)
-        judged = JudgedFit(own.at_rest(), fit, accept_structure(own, fit, base))
-        found.append(_at_rest(judged) if fit.cost < one.fit.cost else one)
-    return best_first(found)
 
 
 def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:

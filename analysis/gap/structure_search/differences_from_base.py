@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""Effects that differ between hits of a point, beside a base that explains the hits.
+
+Errors of a modal table are the same in all hits of a point: they imitate no law that
+bends with amplitude and no joint that follows its torque. So such an effect is sought
+in what is left when errors of any size are allowed, far below what a table may leave.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.analysis.gap.model.effect import Candidate, words_of
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import screen
+from jointbench.analysis.gap.search.selection_round import Progress
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.fit_from_base import fit_from_base
+from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, best_first
+
+
+def differences_from_base(
+    whole: StructureBench, base: Fit, progress: Progress
+) -> list[JudgedFit]:
+    """Return fits of effects that differ between hits, best first; none without a sign.
+
+    They have no slopes, so that a search may follow.
+
+    Args:
+        whole: all records, on which the base was found and explains them.
+        base: fit without effects.
+        progress: receives one line for each step.
+    """
+    progress("directed tests of what differs between hits")
+    own = with_any_errors(whole.chosen(one_of_each(whole.campaign.hits)))
+    window = Resolution(STRUCTURE.approach_windows[-1])
+    near = minimise(make_problem(own, ()), base.x, window, iterations=2)
+    differing = [c for c in own.candidates if differs(own, c)]
+    found = screen(own, near, differing, resolution=window)
+    least = max(STRUCTURE.difference_drop, STRUCTURE.test_share * found.largest)
+    done: list[JudgedFit] = []
+    for candidate in found.leaders(STRUCTURE.whole_fits):
+        test = found.best(candidate, 1)[0]
+        if test.drop < least:
+            break
+        progress(f"{words_of((candidate,))} from the base")
+        done.append(fit_from_base(whole, own, base, test, window))
+    return best_first(done)
+
+
+def takes_differences(bench: StructureBench, fit: Fit, base: Fit) -> bool:
+    """Return whether effects take what differs between hits of a point.
+
+    Args:
+        bench: all records, on which the fit was found.
+        fit: with effects.
+        base: fit without effects.
+    """
+    if not all(differs(bench, c) for c in fit.candidates):
+        return False
+    own = with_any_errors(bench)
+    left = own.residual(base.base, (), FULL), own.residual(fit.base, fit.terms, FULL)
+    return float(left[0] @ left[0] - left[1] @ left[1]) > STRUCTURE.difference_drop
+
+
+def differs(bench: StructureBench, candidate: Candidate) -> bool:
+    """Return whether an effect acts differently in hits of one point.
+
+    Args:
+        bench: with its catalogue.
+        candidate: effect at a site.
+    """
+    names = {e.effect.name for e in bench.entries if e.nonlinear or e.by_torque}
+    return candidate.effect.name in names
+
+
+def with_any_errors(bench: StructureBench) -> StructureBench:
+    """Return a bench on which errors of its modal table may have any size.
+
+    Raises:
+        ValueError: its errors are not known yet, or its table is exact.
+    """
+    if bench.errors is None:
+        raise ValueError("errors of the table are not known yet")
+    sd = np.maximum(bench.errors.sd, bench.errors.sd.mean(axis=(0, 1)))
+    errors = replace(bench.errors, sd=STRUCTURE.any_error * sd)
+    return replace(bench, errors=errors, kept={})
