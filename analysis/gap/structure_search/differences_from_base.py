@@ -29,7 +29,7 @@ def differences_from_base(
 ) -> list[JudgedFit]:
     """Return fits of effects that differ between hits, best first; none without a sign.
 
-    They have no slopes, so that a search may follow.
+    They are at rest, so that a search may follow.
 
     Args:
         whole: all records, on which the base was found and explains them.

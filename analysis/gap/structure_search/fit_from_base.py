@@ -4,7 +4,7 @@
 import numpy as np
 
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
-from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Direction
@@ -14,7 +14,7 @@ from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import settled
-from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, at_rest
 
 
 def fit_from_base(
@@ -24,7 +24,7 @@ def fit_from_base(
     test: Direction,
     window: Resolution,
 ) -> JudgedFit:
-    """Return the fit of an effect to all records, without slopes.
+    """Return the fit of an effect to all records, at rest.
 
     The start of a directed test is linear: that of a cable resonance had eighteen times
     the cost of the base. So its coordinates are fitted in the window of the test first.
@@ -44,4 +44,4 @@ def fit_from_base(
     start = np.concatenate([base.base, near.x[near.n_base :]])
     bench, fit = settled(whole, start, candidates, near=True)
     judged = accept_structure(bench, fit, base)
-    return JudgedFit(bench.at_rest(), without_slopes(fit), judged)
+    return at_rest(JudgedFit(bench.at_rest(), fit, judged))

@@ -67,7 +67,6 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
-    best_first,
     first_with_slopes,
     in_whole_records,
     leaves_much,
@@ -130,8 +129,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
-    done = in_whole_records(bench, few, base, singles, progress)
-    done = best_first([*done, *from_base])
+    done = in_whole_records(bench, few, base, singles, progress, from_base)
     if first.passed:
         done = [one for one in done if _needed(one, base)]
     if not done:

@@ -47,10 +47,12 @@ def in_whole_records(
     base: Fit,
     carried: Sequence[Fit],
     progress: Progress,
+    judged: Sequence[JudgedFit] = (),
 ) -> list[JudgedFit]:
     """Fit the best candidates to whole records, accepted ones first.
 
-    One record of each condition decides which of them are fitted to all.
+    One record of each condition decides which of them are fitted to all, unless they
+    are already.
 
     Args:
         bench: all records.
@@ -58,7 +60,9 @@ def in_whole_records(
         base: fit without effects.
         carried: fits in the longer window, best first.
         progress: receives one line for each fit.
+        judged: fits to all records, which are among those returned.
     """
+    known = {labels_of(one.fit.candidates) for one in judged}
     few = replace(few, reach=bench.reach)
     met = _met_in_windows(few, carried, progress)
     near: list[_Found] = []
@@ -77,17 +81,19 @@ def in_whole_records(
     for own, fit in near:
         if fit.cost > near[0][1].cost + STRUCTURE.cost_above_best:
             break
+        if labels_of(fit.candidates) in known:
+            continue
         progress(f"{words_of(fit.candidates)} in all records")
         # Slopes of all records are the largest array there is.
-        done[:1] = [_at_rest(one) for one in done[:1]]
+        done[:1] = [at_rest(one) for one in done[:1]]
         whole = replace(bench, layout=own.layout)
         near_it = near_records(own, fit)
         whole, found = settled(whole, fit.x, fit.candidates, near=near_it)
-        judged = accept_structure(whole, found, base)
-        done.append(JudgedFit(whole.at_rest(), found, judged))
+        acceptance = accept_structure(whole, found, base)
+        done.append(JudgedFit(whole.at_rest(), found, acceptance))
         del whole, found
         done = best_first(done)
-    return first_with_slopes(done)
+    return first_with_slopes(best_first([*done, *judged]))
 
 
 def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
@@ -113,8 +119,12 @@ def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
     return ranked[:1] + rest
 
 
-def _at_rest(one: JudgedFit) -> JudgedFit:
-    """Return a fit without slopes, but for those of laws, which take long."""
+def at_rest(one: JudgedFit) -> JudgedFit:
+    """Return a fit without slopes, but for those of laws, which take long.
+
+    Args:
+        one: fit to all records.
+    """
     if one.bench.nonlinear(one.fit.candidates):
         return one
     return replace(one, fit=without_slopes(one.fit))
