@@ -67,6 +67,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
+    best_first,
     first_with_slopes,
     in_whole_records,
     leaves_much,
@@ -106,38 +107,102 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     start = _base_in_windows(few)
     progress("base in whole records")
     bench = replace(bench, reach=STRUCTURE.final_reach)
-    whole, base = _base_in_whole_records(bench, few, start)
+    found = _judged_base(*_base_in_whole_records(bench, few, start))
     few = few.at(start, (), few.landing, few.table_floor)
-    bench, few = (replace(one, layout=whole.layout) for one in (bench, few))
-    first = accept_structure(whole, base, base)
-    before = fit_summary(whole, base)
-    # The search needs the chi2 of the base; its slopes take a gigabyte.
-    base = without_slopes(base)
-    explains = whole.uncertain and first.excess <= first.allowed
-    from_base = _from_base(whole, base, progress) if explains else []
-    if first.passed and not one_effect_takes_much(whole, base):
-        needed = [one for one in from_base if _needed(one, base)]
-        none = _complete(whole, base, first, UNTESTED, before)
-        if not needed:
-            return none
-        needed = first_with_slopes(needed)
-        judged = _judged(none.outcome, needed)
-        return StructureOutcome(judged, needed[0].bench, whole, before)
-    whole = whole.at_rest()
+    bench, few = (replace(one, layout=found.whole.layout) for one in (bench, few))
+    from_base = _from_base(found, progress)
+    if found.first.passed and not one_effect_takes_much(found.whole, found.base):
+        return _needed_from_base(found, from_base)
+    found = replace(found, whole=found.whole.at_rest())
+    return _searched(found, bench, few, start, from_base, progress)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Base:
+    """The fit without effects.
+
+    Attributes:
+        whole: all records, on which it was found.
+        base: fit, without its slopes, which take a gigabyte.
+        first: its acceptance.
+        before: its gap and parameters.
+    """
+
+    whole: StructureBench
+    base: Fit
+    first: Acceptance
+    before: FitSummary
+
+    def complete(self, screening: Screening) -> StructureOutcome:
+        """Return the outcome that nothing is missing, or that nothing was found."""
+        return _complete(self.whole, self.base, self.first, screening, self.before)
+
+    def judged(
+        self, done: Sequence[JudgedFit], screening: Screening
+    ) -> StructureOutcome:
+        """Return the outcome with fits of effects, best first."""
+        outcome = _judged(self.complete(screening).outcome, done)
+        return StructureOutcome(outcome, done[0].bench, self.whole, self.before)
+
+
+def _judged_base(whole: StructureBench, base: Fit) -> _Base:
+    """Return the base with its acceptance."""
+    first, before = accept_structure(whole, base, base), fit_summary(whole, base)
+    return _Base(whole, without_slopes(base), first, before)
+
+
+def _from_base(found: _Base, progress: Progress) -> list[JudgedFit]:
+    """Return fits of what no modal table imitates, from a base that explains."""
+    whole, base, first = found.whole, found.base, found.first
+    if not whole.uncertain or first.excess > first.allowed:
+        return []
+    sensors = sensors_from_base(whole, base, progress)
+    return [*sensors, *differences_from_base(whole, base, progress)]
+
+
+def _needed_from_base(found: _Base, from_base: Sequence[JudgedFit]) -> StructureOutcome:
+    """Return the outcome beside an accepted base, with what it needs."""
+    needed = [one for one in from_base if _needed(one, found.base)]
+    if not needed:
+        return found.complete(UNTESTED)
+    return found.judged(first_with_slopes(best_first(needed)), UNTESTED)
+
+
+def _searched(
+    found: _Base,
+    bench: StructureBench,
+    few: StructureBench,
+    start: FloatArray,
+    from_base: Sequence[JudgedFit],
+    progress: Progress,
+) -> StructureOutcome:
+    """Search for missing effects in short windows, and fit the best to all records.
+
+    Args:
+        found: base.
+        bench: all records, not expanded.
+        few: one record of each condition.
+        start: base coordinates as fitted in short windows.
+        from_base: fits of effects from the base.
+        progress: receives one line for each step.
+    """
+    base = found.base
     progress("directed tests")
     few = few.chosen(torques_in_turn(few.campaign.hits))
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = tested(few, near)
     singles = carried(few, near, screening, progress)
     done = in_whole_records(bench, few, base, singles, progress, from_base)
-    if first.passed:
+    if found.first.passed:
         done = [one for one in done if _needed(one, base)]
     if not done:
-        return _complete(whole, base, first, screening, before)
+        return found.complete(screening)
     done = first_with_slopes(done)
-    far_off = chi2_per_dof(whole, base) > STRUCTURE.explaining_chi2
-    if found := needless(done[0], screening, far_off=far_off):
-        return found
+    # A fit from the base would lead back to it.
+    if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
+        far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2
+        if complete := needless(done[0], screening, far_off=far_off):
+            return complete
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
         pairs = _with_a_second(few, singles, progress)
@@ -146,8 +211,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
             done = [one]
         elif two and two[0].acceptance.passed and _both_matter(two[0]):
             done = two
-    none = _complete(whole, base, first, screening, before)
-    return StructureOutcome(_judged(none.outcome, done), done[0].bench, whole, before)
+    return found.judged(done, screening)
 
 
 def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
@@ -182,12 +246,6 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
 def _tested_from_base(bench: StructureBench, candidate: Candidate) -> bool:
     """Return whether `_from_base` tests an effect."""
     return candidate.site.kind == "channel" or differs(bench, candidate)
-
-
-def _from_base(whole: StructureBench, base: Fit, progress: Progress) -> list[JudgedFit]:
-    """Return fits of what no modal table imitates from an explaining base."""
-    sensors = sensors_from_base(whole, base, progress)
-    return [*sensors, *differences_from_base(whole, base, progress)]
 
 
 def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
