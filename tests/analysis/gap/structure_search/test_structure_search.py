@@ -1,6 +1,7 @@
 """The search on bolted bodies: what is fitted to whole records, and what is named."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from hit_campaigns import Hidden, write_campaign
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
 from jointbench.analysis.gap.model.effect import Candidate, Term
@@ -15,7 +17,7 @@ from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.descent import Descent, descend, minimise
 from jointbench.analysis.gap.search.screening import Direction, Screening
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
@@ -364,3 +366,35 @@ def test_with_an_uncertain_table_the_base_is_fitted_from_any_effect(
     assert after.outcome.acceptance.passed
     assert after.outcome.best.candidates == ()
     assert needless(best, UNTESTED, far_off=True) is None
+
+
+def test_a_fit_far_off_ends_by_what_its_samples_count_as(
+    uncertain: StructureBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Hits that are a third louder: excess over samples would be none, so it creeps."""
+    hits = uncertain.campaign.hits
+    louder = replace(hits, response=1.3 * hits.response)
+    campaign = replace(uncertain.campaign, hits=louder)
+    problem = make_problem(replace(uncertain, campaign=campaign, kept={}), ())
+    looks: list[Resolution] = []
+    plain = StructureBench.residual
+
+    def counted(
+        own: StructureBench,
+        base: FloatArray,
+        terms: Sequence[Term],
+        resolution: Resolution,
+    ) -> FloatArray:
+        looks.append(resolution)
+        return plain(own, base, terms, resolution)
+
+    monkeypatch.setattr(StructureBench, "residual", counted)
+    start, cost, count = np.zeros(uncertain.base_sd.size), [], []
+    samples = uncertain.blocks.dof
+    for dof in (None, samples / uncertain.coherence):
+        looks.clear()
+        how = Descent(SHORT, iterations=20, exact_slopes=False, dof=dof)
+        cost.append(descend(problem, start, how).cost)
+        count.append(len(looks))
+    assert count[1] < count[0]
+    assert cost[0] <= cost[1] < 1.01 * cost[0]
