@@ -13,6 +13,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.station.drawing.palette import GUIDE, MEMBERS, MODEL
 from jointbench.station.files.json_file import read_json
+from jointbench.station.gap.label_sides import clear_sides
 from jointbench.station.report.gap_sentences import place
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import Plot, Report, Section
@@ -31,6 +32,8 @@ _LOOK = {
     "sensors": ("diamond", MEMBERS[3], "top center"),
 }
 """Symbol, color and place of the name, of each kind of place."""
+_PIXELS = np.array([900.0, 400.0])
+"""Width and height of the picture in a window of common size."""
 _ROOM = "   "
 """Keeps names clear of the ring around a named place."""
 _EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
@@ -182,7 +185,8 @@ def structure_figure(plan: StructurePlan, sites: Sequence[str]) -> Figure:
     """
     traces = _edges(plan, sites)
     kinds = dict.fromkeys(plan.kinds)
-    traces += [_places(plan, kind) for kind in kinds]
+    named_places = _named_places(plan)
+    traces += [_places(named_places, kind) for kind in kinds]
     marked = marked_places(plan, sites)
     if marked:
         x, y = _flat(plan.positions[marked])
@@ -211,20 +215,43 @@ def _edges(plan: StructurePlan, sites: Sequence[str]) -> list[Trace]:
     return traces
 
 
-def _places(plan: StructurePlan, kind: str) -> Trace:
+@dataclass(frozen=True, slots=True)
+class _Named:
+    """A place in the picture [mm] with its name, and the side where that stands."""
+
+    kind: str
+    at: tuple[float, float]
+    text: str
+    side: str
+
+
+def _named_places(plan: StructurePlan) -> list[_Named]:
+    """Return all places, those of one kind and position as one."""
+    shared: dict[tuple[str, Place], list[str]] = {}
+    for name, kind, (x, y, z) in zip(
+        plan.names, plan.kinds, plan.positions, strict=True
+    ):
+        shared.setdefault((kind, (x, y, z)), []).append(name)
+    flat = _flat(np.array([at for _, at in shared]))
+    texts = [_label(names) for names in shared.values()]
+    preferred = [_LOOK[kind][2] for kind, _ in shared]
+    corners = np.concatenate([flat, _flat(plan.boxes.reshape(-1, 3))], axis=1)
+    pixel = float(np.max(np.ptp(corners, axis=1) / _PIXELS)) or 1.0
+    sides = clear_sides(flat, texts, preferred, pixel)
+    rows = zip(shared, flat.T.tolist(), texts, sides, strict=True)
+    return [_Named(kind, (x, y), text, side) for (kind, _), (x, y), text, side in rows]
+
+
+def _places(named: Sequence[_Named], kind: str) -> Trace:
     """Return all places of one kind with their names."""
-    shared: dict[Place, list[str]] = {}
-    for name, own, at in zip(plan.names, plan.kinds, plan.positions, strict=True):
-        if own == kind:
-            x, y, z = at
-            shared.setdefault((x, y, z), []).append(name)
-    symbol, color, side = _LOOK[kind]
-    x, y = _flat(np.array(list(shared)))
+    own = [one for one in named if one.kind == kind]
+    symbol, color, _ = _LOOK[kind]
+    x, y = np.array([one.at for one in own]).T
     return {
         **markers(x, y, kind, color=color, symbol=symbol, size=9),
         "mode": "markers+text",
-        "text": [f"{_ROOM}{_label(names)}{_ROOM}" for names in shared.values()],
-        "textposition": side,
+        "text": [f"{_ROOM}{one.text}{_ROOM}" for one in own],
+        "textposition": [one.side for one in own],
         "textfont": {"size": 11, "color": color},
         "cliponaxis": False,
     }

@@ -4,8 +4,10 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from jointbench.station.gap.label_sides import clear_sides
 from jointbench.station.gap.structure_plan import (
     NAMED_COLOR,
     StructurePlan,
@@ -71,6 +73,14 @@ def test_places_are_named(plan: StructurePlan) -> None:
     ]
     assert names == [["bolt 0", "bolt 1"], ["foot 0"], ["P1"], ["A1"]]
     assert [one["text"] for one in picture["layout"]["annotations"]] == ["top"]
+
+
+def test_names_of_places_beside_each_other_do_not_cover_each_other() -> None:
+    """A sensor beside a foot: one name stands right, the other one elsewhere."""
+    beside = np.array([[0.0, 12.0, 400.0], [0.0, 4.0, 0.0]])
+    right = ["middle right"] * 3
+    sides = clear_sides(beside, ["foot 1", "A5", "A6"], right, 1.0)
+    assert sides == ["middle left", "middle right", "middle right"]
 
 
 def test_a_named_body_has_thick_edges(plan: StructurePlan) -> None:
