@@ -297,6 +297,13 @@ class StructureSettings:
         "30 units of chi2 of twelve hits: the steps that follow, on all hits, separate "
         "rivals",
     )
+    table_drop: float = numerical(
+        0.3,
+        "chi2",
+        "drop of the cost below which a fit ends where the modal table is uncertain",
+        "smaller steps and their slopes took a quarter of the time of a base (540009); "
+        "chance alone reaches 14 to 17",
+    )
     weighed_sd: float = numerical(
         0.01,
         "-",

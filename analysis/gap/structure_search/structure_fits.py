@@ -186,10 +186,11 @@ def _left_to_next(bench: StructureBench, fit: Fit) -> tuple[Fit, SlopesOnHand | 
 def _least_drop(
     bench: StructureBench, candidates: Sequence[Candidate], window: Resolution
 ) -> float:
-    """Return the drop of the cost below which a fit with laws need not continue."""
+    """Return the drop of the cost below which a fit need not continue."""
+    least = STRUCTURE.table_drop if bench.uncertain else 0.0
     if not bench.nonlinear(candidates):
-        return 0.0
-    return STRUCTURE.law_drop * _rows(bench, window)
+        return least
+    return max(least, STRUCTURE.law_drop * _rows(bench, window))
 
 
 def _dof(bench: StructureBench, window: Resolution) -> float | None:

@@ -44,6 +44,7 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
+from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
     of_table,
     sensors_from_base,
@@ -104,9 +105,9 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     """
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
-    start = _base_in_windows(few)
+    few, start = retuned(few, _base_in_windows(few), ())
     progress("base in whole records")
-    bench = replace(bench, reach=STRUCTURE.final_reach)
+    bench = replace(bench, reach=STRUCTURE.final_reach, layout=few.layout)
     found = _judged_base(*_base_in_whole_records(bench, few, start))
     few = few.at(start, (), few.landing, few.table_floor)
     bench, few = (replace(one, layout=found.whole.layout) for one in (bench, few))

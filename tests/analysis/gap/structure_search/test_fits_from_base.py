@@ -26,9 +26,9 @@ def test_a_gain_is_found_beside_a_base_that_explains_the_hits(
     _, base = settled(uncertain, np.zeros(uncertain.base_sd.size), (), near=True)
     assert sensors_from_base(uncertain, base, lambda line: None) == []
     hits = uncertain.campaign.hits
-    louder = hits.response.copy()
-    louder[:, 2] *= 1.15
-    campaign = replace(uncertain.campaign, hits=replace(hits, response=louder))
+    larger = hits.response.copy()
+    larger[:, 2] *= 1.15
+    campaign = replace(uncertain.campaign, hits=replace(hits, response=larger))
     faulty = replace(uncertain, campaign=campaign, kept={})
     bench, base = settled(faulty, base.base, (), near=True)
     best, *_ = sensors_from_base(bench, base, lambda line: None)

@@ -371,10 +371,10 @@ def test_with_an_uncertain_table_the_base_is_fitted_from_any_effect(
 def test_a_fit_far_off_ends_by_what_its_samples_count_as(
     uncertain: StructureBench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Hits that are a third louder: excess over samples would be none, so it creeps."""
+    """Answers a third too large: over its samples there is no excess, so it creeps."""
     hits = uncertain.campaign.hits
-    louder = replace(hits, response=1.3 * hits.response)
-    campaign = replace(uncertain.campaign, hits=louder)
+    stronger = replace(hits, response=1.3 * hits.response)
+    campaign = replace(uncertain.campaign, hits=stronger)
     problem = make_problem(replace(uncertain, campaign=campaign, kept={}), ())
     looks: list[Resolution] = []
     plain = StructureBench.residual
