@@ -191,15 +191,22 @@ def _at(across: int, down: int, more: str = "") -> str:
 def _texts(trace: Mapping[str, object], x: FloatArray, y: FloatArray) -> str:
     texts = trace.get("text")
     listed = list(texts) if isinstance(texts, list | tuple) else []
-    side = str(trace.get("textposition", "top"))
+    stated = trace.get("textposition", "top")
+    sides = stated if isinstance(stated, list | tuple) else [stated] * len(listed)
     across, down, known = on_grid(x, y)
-    place = "left" if "left" in side else "right" if "right" in side else "above"
-    place = "below" if side.startswith("bottom") else place
     return "".join(
-        f'<b class="tx {place}" style="{_at(int(a), int(b))}">{text_of(t).strip()}</b>'
-        for a, b, ok, t in zip(across, down, known, listed, strict=False)
+        f'<b class="tx {_side(str(side))}" style="{_at(int(a), int(b))}">'
+        f"{text_of(t).strip()}</b>"
+        for a, b, ok, t, side in zip(across, down, known, listed, sides, strict=False)
         if ok and str(t).strip()
     )
+
+
+def _side(stated: str) -> str:
+    """Return the class of a text by its ``textposition``."""
+    if stated.startswith("bottom"):
+        return "below"
+    return "left" if "left" in stated else "right" if "right" in stated else "above"
 
 
 def _bars(

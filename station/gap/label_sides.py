@@ -16,10 +16,6 @@ _SIDES = {
     "middle left": (-1.0, 0.0),
     "top center": (0.0, 1.0),
     "bottom center": (0.0, -1.0),
-    "top right": (1.0, 1.0),
-    "top left": (-1.0, 1.0),
-    "bottom right": (1.0, -1.0),
-    "bottom left": (-1.0, -1.0),
 }
 
 

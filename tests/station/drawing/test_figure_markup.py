@@ -58,6 +58,15 @@ def test_every_kind_of_trace_is_drawn(trace, kind):
     assert kind in drawn(*trace)
 
 
+def test_names_of_points_stand_at_one_side_or_each_at_its_own():
+    """Sides are stated for a trace or for each of its points, as in Plotly."""
+    named = {**markers(X[:2], X[:2], "m"), "mode": "markers+text", "text": ["a", "b"]}
+    once = drawn({**named, "textposition": "bottom center"})
+    each = drawn({**named, "textposition": ["middle left", "top center"]})
+    assert re.findall(r'class="tx (\w+)"', once) == ["below", "below"]
+    assert re.findall(r'class="tx (\w+)"', each) == ["left", "above"]
+
+
 def test_an_interval_along_x_is_a_level_line_within_the_axis():
     """From its left end to its right one, both of which the axis holds."""
     trace = {**markers([2.0], [1.0], "m"), "error_x": {"array": [1.0]}}
