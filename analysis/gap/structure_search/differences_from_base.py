@@ -10,18 +10,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointbench.analysis.gap.model.effect import Candidate, words_of
-from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
+from jointbench.analysis.gap.model.effect import Candidate
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import minimise
-from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
-from jointbench.analysis.gap.structure_search.fit_from_base import fit_from_base
+from jointbench.analysis.gap.structure_search.fits_from_base import (
+    fits_from_base,
+    tested_beside,
+)
 from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
-from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, best_first
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 
 
 def differences_from_base(
@@ -38,19 +38,10 @@ def differences_from_base(
     """
     progress("directed tests of what differs between hits")
     own = with_any_errors(whole.chosen(one_of_each(whole.campaign.hits)))
-    window = Resolution(STRUCTURE.approach_windows[-1])
-    near = minimise(make_problem(own, ()), base.x, window, iterations=2)
     differing = [c for c in own.candidates if differs(own, c)]
-    found = screen(own, near, differing, resolution=window)
-    least = max(STRUCTURE.difference_drop, STRUCTURE.test_share * found.largest)
-    done: list[JudgedFit] = []
-    for candidate in found.leaders(STRUCTURE.whole_fits):
-        test = found.best(candidate, 1)[0]
-        if test.drop < least:
-            break
-        progress(f"{words_of((candidate,))} from the base")
-        done.append(fit_from_base(whole, own, base, test, window))
-    return best_first(done)
+    _, found = tested_beside(own, base, differing)
+    least = STRUCTURE.difference_drop
+    return fits_from_base(whole, own, base, found, progress, least=least)
 
 
 def takes_differences(bench: StructureBench, fit: Fit, base: Fit) -> bool:

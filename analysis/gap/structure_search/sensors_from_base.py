@@ -7,21 +7,18 @@ mode. So a fault is seen in 60 ms beside an accepted base, in which it leaves ch
 inconspicuous, and what is left of the records shows how large errors of the table are.
 """
 
-from jointbench.analysis.gap.model.effect import words_of
-from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import minimise
-from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
-from jointbench.analysis.gap.structure_search.fit_from_base import fit_from_base
+from jointbench.analysis.gap.structure_search.fits_from_base import (
+    fits_from_base,
+    tested_beside,
+)
 from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import chi2_per_dof
-from jointbench.analysis.gap.structure_search.whole_records import JudgedFit, best_first
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 
 
 def sensors_from_base(
@@ -38,21 +35,11 @@ def sensors_from_base(
     """
     progress("directed tests of sensors")
     own = whole.chosen(torques_in_turn(whole.campaign.hits))
-    window = Resolution(STRUCTURE.approach_windows[-1])
-    near = minimise(make_problem(own, ()), base.x, window, iterations=2)
-    size = min(chi2_per_dof(own, near), 1.0)
     sensors = [c for c in own.candidates if c.site.kind == "channel"]
-    found = screen(own, near, sensors, resolution=window)
-    if found.largest < found.threshold * size:
+    near, found = tested_beside(own, base, sensors)
+    if found.largest < found.threshold * min(chi2_per_dof(own, near), 1.0):
         return []
-    done: list[JudgedFit] = []
-    for candidate in found.leaders(STRUCTURE.whole_fits):
-        test = found.best(candidate, 1)[0]
-        if test.drop < STRUCTURE.test_share * found.largest:
-            break
-        progress(f"{words_of((candidate,))} from the base")
-        done.append(fit_from_base(whole, own, base, test, window))
-    return best_first(done)
+    return fits_from_base(whole, own, base, found, progress)
 
 
 def of_table(bench: StructureBench, fit: Fit) -> float:
