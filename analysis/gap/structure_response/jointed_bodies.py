@@ -166,7 +166,7 @@ class JointedBodies:
         Args:
             band: highest frequency with force [Hz].
         """
-        highest = 2.0 * np.pi * band * STRUCTURE.tuned_band
+        highest = 2.0 * np.pi * band * STRUCTURE.counted_band
         elastic = self.omega > STRUCTURE.rigid_share * 2.0 * np.pi * band
         return np.flatnonzero(elastic & (self.omega < highest))
 

@@ -142,11 +142,12 @@ class StructureSettings:
         "square root of rounding",
     )
     tuned_band: float = numerical(
-        1.3,
+        1.5,
         "of the band",
         "closed modes up to there have a frequency of their own where the modal table "
         "is uncertain",
-        "modes above act by their static part, which hardly changes",
+        "a mode at 1.31 times the band left 1 % of the peaks of a complete bench "
+        "(540009), those above 1.5 their static part",
     )
     least_phase: float = numerical(
         0.01,
@@ -156,11 +157,11 @@ class StructureSettings:
         "bodies that move as rigid ones on their feet: 1e-4",
     )
     close_mixing: float = numerical(
-        0.1,
+        0.05,
         "-",
         "sd of the share of a closed mode in another one above which their coupling "
         "is a coordinate where the modal table is uncertain",
-        "what first order leaves is half of its square, 0.5 % of the residues",
+        "what first order leaves is half of its square, 0.1 % of the residues",
     )
     least_pairs: int = numerical(
         2,
@@ -303,6 +304,12 @@ class StructureSettings:
         "drop of the cost below which a fit ends where the modal table is uncertain",
         "smaller steps and their slopes took a quarter of the time of a base (540009); "
         "chance alone reaches 14 to 17",
+    )
+    counted_band: float = numerical(
+        1.3,
+        "of the band",
+        "elastic modes up to there count as those that a record shows",
+        "hits hardly move modes above",
     )
     weighed_sd: float = numerical(
         0.01,

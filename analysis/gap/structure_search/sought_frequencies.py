@@ -16,6 +16,19 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.structure_fits import chi2_per_dof
+
+
+def may_have_lost_a_mode(few: StructureBench, fit: Fit) -> bool:
+    """Return whether a fit leaves more than usual, but less than one far off.
+
+    Args:
+        few: one record of each condition, on which the fit was found.
+        fit: with or without effects.
+    """
+    chi2 = chi2_per_dof(few, fit)
+    usual = STRUCTURE.sought_chi2 * few.policy.floor_chi2
+    return few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2
 
 
 def sought(few: StructureBench, fit: Fit) -> FloatArray | None:
@@ -23,7 +36,7 @@ def sought(few: StructureBench, fit: Fit) -> FloatArray | None:
 
     Args:
         few: one record of each condition, on which the fit was found.
-        fit: of the base.
+        fit: with or without effects.
     """
     tuned = few.layout.tuned
     if tuned is None:

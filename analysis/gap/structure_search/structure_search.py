@@ -55,7 +55,10 @@ from jointbench.analysis.gap.structure_search.short_windows import (
     carried,
     tested,
 )
-from jointbench.analysis.gap.structure_search.sought_frequencies import sought
+from jointbench.analysis.gap.structure_search.sought_frequencies import (
+    may_have_lost_a_mode,
+    sought,
+)
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
@@ -384,7 +387,7 @@ def _base_in_whole_records(
     """
     few = replace(few, reach=bench.reach, floor=few.table_floor)
     few, fit = approached(few, start, ())
-    if _may_have_lost_a_mode(few, fit) and (further := sought(few, fit)) is not None:
+    if may_have_lost_a_mode(few, fit) and (further := sought(few, fit)) is not None:
         beyond, other = approached(few, further, ())
         few, fit = (beyond, other) if other.cost < fit.cost else (few, fit)
     fit = without_slopes(fit)
@@ -396,13 +399,6 @@ def _base_in_whole_records(
         return settled(bench, fit.x, (), near=True)
     whole = bench.at(fit.x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), fit.x, FULL, iterations=0)
-
-
-def _may_have_lost_a_mode(few: StructureBench, fit: Fit) -> bool:
-    """Return whether a base leaves more than usual, but less than an effect does."""
-    chi2 = chi2_per_dof(few, fit)
-    usual = STRUCTURE.sought_chi2 * few.policy.floor_chi2
-    return few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2
 
 
 def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:

@@ -17,6 +17,10 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.continued_laws import continued
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
+from jointbench.analysis.gap.structure_search.sought_frequencies import (
+    may_have_lost_a_mode,
+    sought,
+)
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
@@ -77,6 +81,7 @@ def in_whole_records(
         own, found = in_full(own, start, fit.candidates)
         near.append((own.at_rest(), without_slopes(found)))
     near.sort(key=lambda one: one[1].cost)
+    near = _frequencies_sought(near, progress)
     done: list[JudgedFit] = []
     for own, fit in near:
         if fit.cost > near[0][1].cost + STRUCTURE.cost_above_best:
@@ -94,6 +99,29 @@ def in_whole_records(
         del whole, found
         done = best_first(done)
     return first_with_slopes(best_first([*done, *judged]))
+
+
+def _frequencies_sought(near: Sequence[_Found], progress: Progress) -> list[_Found]:
+    """Return fits, best first, the best one from frequencies that it had lost.
+
+    With laws each frequency that is tried is a time integration, so they keep theirs.
+
+    Args:
+        near: fits to one record of each condition, best first.
+        progress: receives one line for the fit, if there is one.
+    """
+    if not near or _explains(near[0]):
+        return list(near)
+    own, fit = near[0]
+    if own.nonlinear(fit.candidates) or not may_have_lost_a_mode(own, fit):
+        return list(near)
+    if (start := sought(own, fit)) is None:
+        return list(near)
+    progress(f"{words_of(fit.candidates)} from other frequencies")
+    own, found = in_full(own, start, fit.candidates)
+    if found.cost >= fit.cost:
+        return list(near)
+    return [(own.at_rest(), without_slopes(found)), *near[1:]]
 
 
 def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
