@@ -16,11 +16,18 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
-from jointbench.analysis.gap.structure_search.structure_fits import chi2_per_dof
+from jointbench.analysis.gap.structure_search.structure_fits import (
+    approached,
+    chi2_per_dof,
+)
 
 
-def may_have_lost_a_mode(few: StructureBench, fit: Fit) -> bool:
-    """Return whether a fit leaves more than usual, but less than one far off.
+def from_other_frequencies(
+    few: StructureBench, fit: Fit
+) -> tuple[StructureBench, Fit] | None:
+    """Return a better fit from frequencies that a fit has lost; None if there is none.
+
+    They are sought where a fit leaves more than usual, but is not far off.
 
     Args:
         few: one record of each condition, on which the fit was found.
@@ -28,7 +35,12 @@ def may_have_lost_a_mode(few: StructureBench, fit: Fit) -> bool:
     """
     chi2 = chi2_per_dof(few, fit)
     usual = STRUCTURE.sought_chi2 * few.policy.floor_chi2
-    return few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2
+    if not (few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2):
+        return None
+    if (start := sought(few, fit)) is None:
+        return None
+    few, other = approached(few, start, fit.candidates)
+    return (few, other) if other.cost < fit.cost else None
 
 
 def sought(few: StructureBench, fit: Fit) -> FloatArray | None:

@@ -56,8 +56,7 @@ from jointbench.analysis.gap.structure_search.short_windows import (
     tested,
 )
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
-    may_have_lost_a_mode,
-    sought,
+    from_other_frequencies,
 )
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
@@ -387,9 +386,7 @@ def _base_in_whole_records(
     """
     few = replace(few, reach=bench.reach, floor=few.table_floor)
     few, fit = approached(few, start, ())
-    if may_have_lost_a_mode(few, fit) and (further := sought(few, fit)) is not None:
-        beyond, other = approached(few, further, ())
-        few, fit = (beyond, other) if other.cost < fit.cost else (few, fit)
+    few, fit = from_other_frequencies(few, fit) or (few, fit)
     fit = without_slopes(fit)
     chi2 = chi2_per_dof(few, fit)
     explains = chi2 < few.policy.floor_chi2

@@ -18,8 +18,7 @@ from jointbench.analysis.gap.structure_response.structure_settings import STRUCT
 from jointbench.analysis.gap.structure_search.continued_laws import continued
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
-    may_have_lost_a_mode,
-    sought,
+    from_other_frequencies,
 )
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
@@ -81,7 +80,7 @@ def in_whole_records(
         own, found = in_full(own, start, fit.candidates)
         near.append((own.at_rest(), without_slopes(found)))
     near.sort(key=lambda one: one[1].cost)
-    near = _frequencies_sought(near, progress)
+    near = _from_other_frequencies(near, progress)
     done: list[JudgedFit] = []
     for own, fit in near:
         if fit.cost > near[0][1].cost + STRUCTURE.cost_above_best:
@@ -101,7 +100,7 @@ def in_whole_records(
     return first_with_slopes(best_first([*done, *judged]))
 
 
-def _frequencies_sought(near: Sequence[_Found], progress: Progress) -> list[_Found]:
+def _from_other_frequencies(near: Sequence[_Found], progress: Progress) -> list[_Found]:
     """Return fits, best first, the best one from frequencies that it had lost.
 
     With laws each frequency that is tried is a time integration, so they keep theirs.
@@ -110,18 +109,13 @@ def _frequencies_sought(near: Sequence[_Found], progress: Progress) -> list[_Fou
         near: fits to one record of each condition, best first.
         progress: receives one line for the fit, if there is one.
     """
-    if not near or _explains(near[0]):
+    if not near or _explains(near[0]) or near[0][0].nonlinear(near[0][1].candidates):
         return list(near)
-    own, fit = near[0]
-    if own.nonlinear(fit.candidates) or not may_have_lost_a_mode(own, fit):
+    progress(f"{words_of(near[0][1].candidates)} from other frequencies")
+    if (better := from_other_frequencies(*near[0])) is None:
         return list(near)
-    if (start := sought(own, fit)) is None:
-        return list(near)
-    progress(f"{words_of(fit.candidates)} from other frequencies")
-    own, found = in_full(own, start, fit.candidates)
-    if found.cost >= fit.cost:
-        return list(near)
-    return [(own.at_rest(), without_slopes(found)), *near[1:]]
+    own, fit = better
+    return [(own.at_rest(), without_slopes(fit)), *near[1:]]
 
 
 def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:

@@ -14,7 +14,10 @@ from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD
-from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
+from jointbench.analysis.gap.residuals.evaluation_resolutions import (
+    FULL,
+    Resolution,
+)
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import Descent, descend, minimise
@@ -31,7 +34,10 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
-from jointbench.analysis.gap.structure_search.sought_frequencies import sought
+from jointbench.analysis.gap.structure_search.sought_frequencies import (
+    from_other_frequencies,
+    sought,
+)
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
@@ -398,3 +404,29 @@ def test_a_fit_far_off_ends_by_what_its_samples_count_as(
         count.append(len(looks))
     assert count[1] < count[0]
     assert cost[0] <= cost[1] < 1.01 * cost[0]
+
+
+def test_a_fit_of_an_effect_seeks_the_frequency_it_has_lost(
+    uncertain: StructureBench,
+) -> None:
+    """A channel reads 30 % more and a mode is 3 % off its table: both are found."""
+    tuned = uncertain.layout.tuned
+    assert tuned is not None
+    k = int(np.searchsorted(tuned.omega, 2.0 * np.pi * 650.0))
+    at, off = uncertain.layout.at(tuned.names[k]), np.zeros(uncertain.base_sd.size)
+    off[at] = 0.03
+    gain = next(c for c in uncertain.candidates if c.effect.name == "gain_error")
+    response = uncertain.response(off, (Term(gain, np.array([0.3])),), None)
+    hits = replace(uncertain.campaign.hits, response=response)
+    nominal = replace(uncertain.campaign.nominal, table_sd=(0.02, 0.02))
+    campaign = replace(uncertain.campaign, hits=hits, nominal=nominal)
+    made = replace(make_structure_bench(campaign), reach=STRUCTURE.final_reach)
+    start = np.concatenate([np.zeros(off.size), [0.3]])
+    made = made.at(start[:-1], (), made.landing, made.table_floor)
+    lost = minimise(make_problem(made, (gain,)), start, FULL, iterations=0)
+    found = from_other_frequencies(made, lost)
+    assert found is not None
+    _, fit = found
+    assert abs(fit.x[at] - 0.03) < 0.006
+    assert abs(fit.x[-1] - 0.3) < 0.01
+    assert fit.cost < 0.1 * lost.cost
