@@ -27,6 +27,9 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
     structure_state,
 )
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_response.closed_flexibility import (
+    closed_flexibility,
+)
 from jointbench.analysis.gap.structure_response.hit_campaign import (
     HitCampaign,
     record_blocks,
@@ -429,9 +432,24 @@ class StructureBench:
             self.frame(window),
             landing_weights(self.landing),
             fine=fine,
+            flexibility=self.kept.get(("flexibility", place[1])),
         )
         self.kept[place] = key, found
         return found
+
+    def for_tests(self, fit: Fit, window: Resolution) -> "StructureBench":
+        """Return the bench with the joints closed once for directed tests of a fit.
+
+        Args:
+            fit: to which effects are added.
+            window: of the tests.
+        """
+        frame = self.frame(window.window)
+        state = self.state(fit.base, fit.terms)
+        bodies = state.bodies_of(self.campaign.bodies)
+        found = closed_flexibility(bodies, state, frame.s)
+        place = ("flexibility", window_count(self.campaign.hits, window.window))
+        return replace(self, kept=frames_of(self.kept) | {place: found})
 
 
 def frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:

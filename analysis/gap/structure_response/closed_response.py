@@ -18,6 +18,13 @@ from functools import partial
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.structure_response.added_to_bodies import (
+    added_rows,
+    ends_with_added,
+    forces_by_column,
+    solved,
+    with_added,
+)
 from jointbench.analysis.gap.structure_response.base_layout import (
     BaseLayout,
     BaseName,
@@ -27,7 +34,7 @@ from jointbench.analysis.gap.structure_response.base_layout import (
     modulus_name,
     stiffness_name,
 )
-from jointbench.analysis.gap.structure_response.joint_state import Attached, JointState
+from jointbench.analysis.gap.structure_response.joint_state import JointState
 from jointbench.analysis.gap.structure_response.jointed_bodies import (
     NORMAL,
     JointedBodies,
@@ -122,11 +129,6 @@ def _sums_over_modes(one: FloatArray, two: FloatArray, d: ComplexArray) -> Compl
     return found.reshape(d.shape[0], len(one), len(two))
 
 
-def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Solve the systems of all lines."""
-    return np.asarray(np.linalg.solve(matrix, right), dtype=np.complex128)
-
-
 def close(
     bodies: JointedBodies,
     state: JointState,
@@ -143,7 +145,7 @@ def close(
         columns: force rows in modes, shape (n_columns, n_modes).
         torque: factor of the torque on stiffness and damping of the bolts [-].
     """
-    rows, columns = _ends(bodies, state, columns)
+    rows, columns = ends_with_added(bodies, state, columns)
     joints = bodies.joint_rows
     d = modal_receptances(bodies, state, s)
     system = _sums_over_modes(joints, joints, d)
@@ -155,73 +157,11 @@ def close(
         lossy = 1.0 + state.compliance[NORMAL] * state.damping[NORMAL] * s
         system[:, normal[:, None], normal] += state.rocking / lossy[:, None, None]
     across = _sums_over_modes(joints, columns, d)
-    left = _solved(system, _sums_over_modes(joints, rows, d))
+    left = solved(system, _sums_over_modes(joints, rows, d))
     response = _sums_over_modes(rows, columns, d)
     response -= left.transpose(0, 2, 1) @ across
-    if _added_rows(bodies, state):
-        force = _forces_by_column(bodies, state, s, response)
-        count = force.shape[1]
-        response = response[:, :-count, :-count] - response[:, :-count, -count:] @ force
+    response = with_added(bodies, state, s, response)
     return Closure(s, torque, response, left, system, across, columns)
-
-
-def _ends(
-    bodies: JointedBodies, state: JointState, columns: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return rows and columns, with those of what is added at their ends."""
-    places = _added_rows(bodies, state)
-    sensors = state.sensors_of(bodies)
-    return (
-        np.concatenate([sensors, *places]),
-        np.concatenate([columns, *places]),
-    )
-
-
-def _added_rows(bodies: JointedBodies, state: JointState) -> list[FloatArray]:
-    """Return the rows of attached things and of tuned modes, (n, n_modes) each."""
-    tuned = () if state.tuned is None else (state.tuned.rows,)
-    return [*(a.rows(bodies) for a in state.attached), *tuned]
-
-
-def _added_forces(
-    bodies: JointedBodies, state: JointState, s: ComplexArray, motion: ComplexArray
-) -> ComplexArray:
-    """Return the forces of what is added at motions of its rows, of their shape.
-
-    Args:
-        bodies: places and rows.
-        state: with what is added.
-        s: Laplace variable, shape (n_lines,).
-        motion: of the rows, shape (n_lines, n, n_columns).
-    """
-    found = motion.copy()
-    at = 0
-    for one in state.attached:
-        own = slice(at, at + len(one.rows(bodies)))
-        found[:, own] *= dynamic_stiffness(one, s)[:, None, None]
-        at = own.stop
-    if state.tuned is not None:
-        found[:, at:] = state.tuned.stiffness @ motion[:, at:]
-    return found
-
-
-def _forces_by_column(
-    bodies: JointedBodies, state: JointState, s: ComplexArray, h: ComplexArray
-) -> ComplexArray:
-    """Return the forces of what is added to the bodies per unit of each column.
-
-    H' = H - H_P (I + Z H_PP)^-1 Z H_P'; rows and columns of what is added are the last.
-
-    Args:
-        bodies: places and rows.
-        state: with what is added.
-        s: Laplace variable, shape (n_lines,).
-        h: response without it, shape (n_lines, n_rows, n_columns).
-    """
-    count = sum(len(rows) for rows in _added_rows(bodies, state))
-    forces = _added_forces(bodies, state, s, h[:, -count:])
-    inner = np.eye(count) + forces[:, :, -count:]
-    return _solved(inner, forces[:, :, :-count])
 
 
 def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
@@ -262,17 +202,17 @@ def _some_lines(found: Closure, some: slice) -> Closure:
 
 def _closed_at(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
     """Return closed rows and columns on all lines of a closure."""
-    rows, _ = _ends(bodies, state, np.zeros((0, bodies.omega.size)))
+    rows, _ = ends_with_added(bodies, state, np.zeros((0, bodies.omega.size)))
     columns, joints, left = found.columns, bodies.joint_rows, found.left
-    right = _solved(found.system, found.across)
+    right = solved(found.system, found.across)
     in_rows = rows - left.transpose(0, 2, 1) @ joints
     in_columns = (columns - right.transpose(0, 2, 1) @ joints).transpose(0, 2, 1)
-    if not _added_rows(bodies, state):
+    if not added_rows(bodies, state):
         return ClosedRows(left, right, in_rows, in_columns)
     d = modal_receptances(bodies, state, found.s)
     bare = _sums_over_modes(rows, columns, d) - left.transpose(0, 2, 1) @ found.across
-    by_row = _forces_by_column(bodies, state, found.s, bare.transpose(0, 2, 1))
-    by_column = _forces_by_column(bodies, state, found.s, bare)
+    by_row = forces_by_column(bodies, state, found.s, bare.transpose(0, 2, 1))
+    by_column = forces_by_column(bodies, state, found.s, bare)
     count = by_row.shape[1]
     return ClosedRows(
         left[:, :, :-count] - left[:, :, -count:] @ by_row,
@@ -280,16 +220,6 @@ def _closed_at(found: Closure, bodies: JointedBodies, state: JointState) -> Clos
         in_rows[:, :-count] - by_row.transpose(0, 2, 1) @ in_rows[:, -count:],
         in_columns[:, :, :-count] - in_columns[:, :, -count:] @ by_column,
     )
-
-
-def dynamic_stiffness(attached: Attached, s: ComplexArray) -> ComplexArray:
-    """Return force per displacement of what is attached [N/m], shape (n_lines,)."""
-    inertia = attached.mass * s**2 + attached.stiffness
-    if attached.frequency is None:
-        return np.asarray(inertia)
-    omega = 2.0 * np.pi * attached.frequency
-    spring = 2.0 * attached.damping * omega * s + omega**2
-    return np.asarray(inertia * spring / (s**2 + spring))
 
 
 _Slope = Callable[[], ComplexArray]

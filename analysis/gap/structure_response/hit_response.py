@@ -9,6 +9,9 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.structure_response.acting_laws import acting_laws
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_response.closed_flexibility import (
+    ClosedFlexibility,
+)
 from jointbench.analysis.gap.structure_response.closed_modes import closed_modes
 from jointbench.analysis.gap.structure_response.closed_response import (
     Closure,
@@ -18,6 +21,7 @@ from jointbench.analysis.gap.structure_response.closed_response import (
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.hit_frames import HitFrame
 from jointbench.analysis.gap.structure_response.joint_state import JointState
+from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 from jointbench.analysis.gap.structure_response.landing import (
     COLUMNS,
     landing_slopes,
@@ -34,11 +38,21 @@ from jointbench.analysis.gap.structure_response.structure_settings import STRUCT
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TorqueClosure:
-    """The closed response at one torque, with its state and the records made at it."""
+    """The closed response at one torque, with its state and the records made at it.
 
-    closure: Closure
+    Attributes:
+        torque: factor on stiffness and damping of the bolts [-].
+        state: at that torque.
+        records: made at it.
+        response: displacement per force [m/N], shape (n_lines, n_rows, n_columns).
+        closure: of which it is; None where it is that of a closed flexibility.
+    """
+
+    torque: float
     state: JointState
     records: IntArray
+    response: ComplexArray
+    closure: Closure | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,6 +63,7 @@ class HitModel:
         campaign: hits, modes and nominal parameters.
         state: of the model.
         frame: transforms of the window.
+        columns: force rows in modes, shape (n_columns, n_modes).
         closures: by torque.
         forces: of the laws at the ports, transformed, shape
             (n_records, n_ports, n_lines); None without laws.
@@ -57,6 +72,7 @@ class HitModel:
     campaign: HitCampaign
     state: JointState
     frame: HitFrame
+    columns: FloatArray
     closures: tuple[TorqueClosure, ...]
     forces: ComplexArray | None
 
@@ -73,7 +89,7 @@ class HitModel:
         """
         rows = np.empty((len(weights), *self.shape))
         for one in self.closures:
-            rows[one.records] = self._struck(one.closure.response, one.records, weights)
+            rows[one.records] = self._struck(one.response, one.records, weights)
         return rows
 
     def response(self, weights: FloatArray) -> FloatArray:
@@ -92,7 +108,7 @@ class HitModel:
         rows = np.empty((len(forces), *self.shape))
         for one in self.closures:
             own = forces[one.records]
-            rows[one.records] = self._pushed(one.closure.response, own)
+            rows[one.records] = self._pushed(one.response, own)
         return rows
 
     def slopes(
@@ -110,7 +126,7 @@ class HitModel:
         """
         bodies = self.state.bodies_of(self.campaign.bodies)
         slopes = [
-            response_slopes(one.closure, bodies, one.state, layout)
+            response_slopes(self._closed(one), bodies, one.state, layout)
             for one in self.closures
         ]
         for k, name in enumerate(layout.names):
@@ -122,9 +138,16 @@ class HitModel:
                     found += self._pushed(slope, self.forces[one.records])
                 if changes:
                     moved = changes[k][one.records]
-                    found += self._pushed(one.closure.response, moved)
+                    found += self._pushed(one.response, moved)
                 rows[one.records] = found
             yield rows
+
+    def _closed(self, one: TorqueClosure) -> Closure:
+        """Return the closure at a torque, which slopes need."""
+        if one.closure is not None:
+            return one.closure
+        bodies = self.state.bodies_of(self.campaign.bodies)
+        return close(bodies, one.state, self.frame.s, self.columns, one.torque)
 
     def _struck(
         self, response: ComplexArray, records: IntArray, weights: FloatArray
@@ -192,6 +215,7 @@ def hit_model(
     weights: FloatArray,
     *,
     fine: bool = True,
+    flexibility: ClosedFlexibility | None = None,
 ) -> HitModel:
     """Close the model at a state, and integrate its laws.
 
@@ -201,6 +225,8 @@ def hit_model(
         frame: transforms of the window.
         weights: force columns of each record, shape (n_records, 9).
         fine: True for the time integration of what is judged, not of fits.
+        flexibility: from which the response follows where the joints are those of the
+            state.
     """
     bodies = state.bodies_of(campaign.bodies)
     columns = [point_columns(p) for p in state.points_of(bodies)]
@@ -208,14 +234,34 @@ def hit_model(
         rows = bodies.bolts.reshape(-1, bodies.omega.size)
         columns.append(rows[list(law_ports(state.laws))])
     stacked = np.concatenate(columns)
-    closures = tuple(
-        TorqueClosure(close(bodies, own, frame.s, stacked, torque), own, records)
-        for torque, own, records in _torques(campaign, state)
-    )
+    if flexibility is not None and flexibility.holds(state, frame.s):
+        every = np.arange(campaign.hits.torque.size)
+        found = flexibility.response(bodies, state, stacked)
+        closures: tuple[TorqueClosure, ...] = (
+            TorqueClosure(1.0, state, every, found, None),
+        )
+    else:
+        closures = tuple(
+            _closed_at(bodies, own, frame, stacked, torque, records)
+            for torque, own, records in _torques(campaign, state)
+        )
     forces = None
     if state.laws:
         forces = law_forces(campaign, state, frame, weights, fine=fine)
-    return HitModel(campaign, state, frame, closures, forces)
+    return HitModel(campaign, state, frame, stacked, closures, forces)
+
+
+def _closed_at(
+    bodies: JointedBodies,
+    state: JointState,
+    frame: HitFrame,
+    columns: FloatArray,
+    torque: float,
+    records: IntArray,
+) -> TorqueClosure:
+    """Return the closed response at one torque."""
+    closure = close(bodies, state, frame.s, columns, torque)
+    return TorqueClosure(torque, state, records, closure.response, closure)
 
 
 def _torques(

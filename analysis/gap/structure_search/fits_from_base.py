@@ -39,7 +39,8 @@ def tested_beside(
         candidates: to be tested.
     """
     near = minimise(make_problem(few, ()), base.x, WINDOW, iterations=2)
-    return near, screen(few, near, candidates, resolution=WINDOW)
+    at_once = few.for_tests(near, WINDOW)
+    return near, screen(at_once, near, candidates, resolution=WINDOW)
 
 
 def fits_from_base(

@@ -30,7 +30,7 @@ def tested(few: StructureBench, near: Fit) -> Screening:
         near: fit in the short window, with or without effects.
     """
     others = [c for c in few.candidates if few.may_add(c, near.candidates)]
-    return screen(few, near, others, resolution=SHORT)
+    return screen(few.for_tests(near, SHORT), near, others, resolution=SHORT)
 
 
 def carried(

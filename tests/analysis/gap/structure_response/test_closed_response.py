@@ -12,6 +12,9 @@ from scipy.special import gamma
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_response.base_layout import base_layout
+from jointbench.analysis.gap.structure_response.closed_flexibility import (
+    closed_flexibility,
+)
 from jointbench.analysis.gap.structure_response.closed_response import close
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.hit_frames import hit_frame
@@ -247,3 +250,37 @@ def test_slopes_are_those_of_differences(
             assert scale == 0.0
             continue
         assert np.abs(slopes[:, k] - difference).max() < 1e-5 * scale, name
+
+
+@pytest.mark.parametrize("change", sorted(CHANGES))
+def test_a_closed_flexibility_gives_the_response_and_slopes_of_the_closure(
+    change: str,
+) -> None:
+    """Attached things are products with it; where joints change it is not taken."""
+    made = campaign()
+    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
+    plain = base_layout(made.bodies, made.nominal)
+    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
+    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+    start = state_of(made.bodies, made.nominal, layout, 0.3 * layout.sd)
+    frame = hit_frame(made.hits, made.hits.force.shape[1])
+    flexibility = closed_flexibility(made.bodies, start, frame.s)
+    assert flexibility is not None
+    state = replace(start, **CHANGES[change])
+    weights = landing_weights(LANDING)
+    quick = hit_model(made, state, frame, weights, flexibility=flexibility)
+    whole = hit_model(made, state, frame, weights)
+    assert (quick.closures[0].closure is None) == ("attached" in CHANGES[change])
+    found, expected = (m.response(weights)[0] for m in (quick, whole))
+    assert distance(found, expected) < 1e-9
+    slopes = (m.slopes(weights, layout) for m in (quick, whole))
+    for one, two in zip(*slopes, strict=True):
+        assert np.abs(one - two).max() <= 1e-9 * np.abs(two).max()
+
+
+def test_a_joint_that_follows_the_torque_has_no_flexibility_of_its_own() -> None:
+    """Its closure differs from hit to hit."""
+    made = campaign()
+    frame = hit_frame(made.hits, made.hits.force.shape[1])
+    state = replace(state_at(made), exponent=0.5)
+    assert closed_flexibility(made.bodies, state, frame.s) is None
