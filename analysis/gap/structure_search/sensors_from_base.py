@@ -10,6 +10,7 @@ inconspicuous, and what is left of the records shows how large errors of the tab
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.fits_from_base import (
     fits_from_base,
     tested_beside,
@@ -52,3 +53,13 @@ def of_table(bench: StructureBench, fit: Fit) -> float:
     if not bench.uncertain or any(c.site.kind != "channel" for c in fit.candidates):
         return 1.0
     return min(chi2_per_dof(bench, fit), 1.0)
+
+
+def as_placed(fit: Fit) -> bool:
+    """Return whether a fit moves a sensor no further than sensors are placed.
+
+    Args:
+        fit: with effects.
+    """
+    moved = [t for t in fit.terms if t.candidate.effect.name == "wrong_position"]
+    return any(abs(float(t.coordinates[0])) < STRUCTURE.least_move for t in moved)

@@ -46,6 +46,7 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
 )
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
+    as_placed,
     of_table,
     sensors_from_base,
 )
@@ -260,6 +261,8 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         fit: with effects.
         base: fit without effects.
     """
+    if bench.uncertain and as_placed(fit):
+        return False
     if bench.uncertain:
         least = STRUCTURE.uncertain_drop * of_table(bench, fit)
         return base.cost - fit.cost > least or takes_differences(bench, fit, base)

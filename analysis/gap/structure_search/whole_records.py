@@ -189,7 +189,9 @@ def _met_in_windows(
     for fit in worth_it(few, carried):
         progress(f"{words_of(fit.candidates)} where hits landed")
         own, start = retuned(few, fit.x, fit.candidates)
-        own, met = in_windows(own, start, fit.candidates, rival=rival)
+        # A linear fit costs little, and its first steps mislead about where it ends.
+        law = own.nonlinear(fit.candidates)
+        own, met = in_windows(own, start, fit.candidates, rival=rival if law else None)
         if further := continued(own, met):
             progress(f"{words_of(further[0])} where hits landed")
             beyond, other = in_windows(own, further[1], further[0])

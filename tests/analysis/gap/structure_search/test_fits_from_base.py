@@ -4,7 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.model.effect import Candidate, Site, Term
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.structure_bench.sensor_effects import SENSOR_EFFECTS
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.differences_from_base import (
     differences_from_base,
@@ -12,9 +15,11 @@ from jointbench.analysis.gap.structure_search.differences_from_base import (
     takes_differences,
 )
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
+    as_placed,
     of_table,
     sensors_from_base,
 )
+from jointbench.analysis.gap.structure_search.short_windows import SHORT
 from jointbench.analysis.gap.structure_search.structure_fits import settled
 from jointbench.analysis.gap.structure_search.structure_search import takes
 
@@ -60,3 +65,19 @@ def test_damping_that_follows_the_torque_is_no_error_of_a_table(
     assert abs(best.fit.x[-1] - 1.0) < 0.2
     assert takes_differences(best.bench, best.fit, base)
     assert takes(best.bench, best.fit, base)
+
+
+def test_a_sensor_a_millimetre_off_is_as_placed(uncertain: StructureBench) -> None:
+    """It is not named beside a base that explains the hits; 5 mm off is a fault."""
+    effect = next(e.effect for e in SENSOR_EFFECTS if e.effect.name == "wrong_position")
+    place = Candidate(effect, Site("channel", "A0"))
+    x = np.zeros(uncertain.base_sd.size)
+    base = minimise(make_problem(uncertain, ()), x, SHORT, iterations=0)
+    base = replace(base, cost=base.cost + 1e4)
+    near, off = (
+        replace(base, candidates=(place,), x=np.append(x, [distance, 0.0]), cost=0.0)
+        for distance in (-1e-3, 5e-3)
+    )
+    assert as_placed(near) and not as_placed(off)
+    assert not takes(uncertain, near, base)
+    assert takes(uncertain, off, base)
