@@ -26,7 +26,7 @@ from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
@@ -205,7 +205,8 @@ def _searched(
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
         far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2
-        if complete := needless(done[0], screening, far_off=far_off):
+        below = 0.0 if far_off else base.cost
+        if complete := needless(done[0], screening, below=below):
             return complete
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
@@ -340,7 +341,7 @@ def _complete(
 
 
 def needless(
-    best: JudgedFit, screening: Screening, *, far_off: bool = False
+    best: JudgedFit, screening: Screening, *, below: float = np.inf
 ) -> StructureOutcome | None:
     """Return the outcome without an effect where the base needs none from there.
 
@@ -348,15 +349,20 @@ def needless(
     alone: from its nominal values, it may have ended beside its minimum. What the base
     does not explain either is no reason to name an effect that is nearly off. With an
     uncertain table, the base may explain the hits from the fit of any effect, unless it
-    was far off.
+    was far off, or leaves more there than where it ended.
 
     Args:
         best: fit with effects, the best one.
         screening: directed tests that led to it.
-        far_off: whether the base was.
+        below: cost of the base where it ended; 0 if it was far off.
     """
     amplitude = weakest_amplitude(best.fit)
-    may_explain = best.bench.uncertain and not far_off
+    bare = make_problem(best.bench, ())
+    may_explain = (
+        best.bench.uncertain
+        and below > 0.0
+        and cost_at(bare, best.fit.base, FULL) < below
+    )
     if amplitude >= STRUCTURE.plain_amplitude and not may_explain:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
