@@ -205,8 +205,8 @@ def _searched(
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
         far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2
-        below = 0.0 if far_off else base.cost
-        if complete := needless(done[0], screening, below=below):
+        complete = needless(done[0], screening, base.cost, far_off=far_off)
+        if complete:
             return complete
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
@@ -341,7 +341,11 @@ def _complete(
 
 
 def needless(
-    best: JudgedFit, screening: Screening, *, below: float = np.inf
+    best: JudgedFit,
+    screening: Screening,
+    ended: float = np.inf,
+    *,
+    far_off: bool = False,
 ) -> StructureOutcome | None:
     """Return the outcome without an effect where the base needs none from there.
 
@@ -349,21 +353,19 @@ def needless(
     alone: from its nominal values, it may have ended beside its minimum. What the base
     does not explain either is no reason to name an effect that is nearly off. With an
     uncertain table, the base may explain the hits from the fit of any effect, unless it
-    was far off, or leaves more there than where it ended.
+    was far off; but not where it leaves more there than where it had ended.
 
     Args:
         best: fit with effects, the best one.
         screening: directed tests that led to it.
-        below: cost of the base where it ended; 0 if it was far off.
+        ended: cost of the base where it had ended.
+        far_off: whether the base was.
     """
-    amplitude = weakest_amplitude(best.fit)
+    amplitude, uncertain = weakest_amplitude(best.fit), best.bench.uncertain
+    if amplitude >= STRUCTURE.plain_amplitude and (far_off or not uncertain):
+        return None
     bare = make_problem(best.bench, ())
-    may_explain = (
-        best.bench.uncertain
-        and below > 0.0
-        and cost_at(bare, best.fit.base, FULL) < below
-    )
-    if amplitude >= STRUCTURE.plain_amplitude and not may_explain:
+    if uncertain and cost_at(bare, best.fit.base, FULL) >= ended:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
     judged = accept_structure(bench, base, base)
