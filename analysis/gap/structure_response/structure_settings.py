@@ -419,6 +419,13 @@ class StructureSettings:
         "14 complete benches: at most 0.17; a preload exponent of damping had 16 "
         "(536000), a damping law 134 (551002)",
     )
+    again_ratio: float = numerical(
+        10.0,
+        "of its cost",
+        "cost of the base beside an effect above which it is not fitted again from there",
+        "a base that led back to the hits began near them; at 73 times its cost one "
+        "crept for more than 300 s (571002)",
+    )
     least_move: float = numerical(
         3e-3,
         "m",

@@ -353,7 +353,7 @@ def needless(
     alone: from its nominal values, it may have ended beside its minimum. What the base
     does not explain either is no reason to name an effect that is nearly off. With an
     uncertain table, the base may explain the hits from the fit of any effect, unless it
-    was far off; but not where it leaves more there than where it had ended.
+    was far off; but not where it leaves far more there than where it had ended.
 
     Args:
         best: fit with effects, the best one.
@@ -365,7 +365,8 @@ def needless(
     if amplitude >= STRUCTURE.plain_amplitude and (far_off or not uncertain):
         return None
     bare = make_problem(best.bench, ())
-    if uncertain and cost_at(bare, best.fit.base, FULL) >= ended:
+    most = STRUCTURE.again_ratio * ended
+    if uncertain and cost_at(bare, best.fit.base, FULL) > most:
         return None
     bench, base = settled(best.bench, best.fit.base, (), near=True)
     judged = accept_structure(bench, base, base)
