@@ -422,8 +422,9 @@ class StructureSettings:
     again_ratio: float = numerical(
         10.0,
         "of its cost",
-        "cost of the base beside an effect above which it is not fitted again from there",
-        "a base that led back to the hits began near them; at 73 times its cost one "
+        "cost of the base beside an effect above which it is not fitted again from "
+        "there",
+        "a base that explained the hits began near them; at 73 times its cost one "
         "crept for more than 300 s (571002)",
     )
     least_move: float = numerical(
