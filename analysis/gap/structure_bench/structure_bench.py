@@ -449,7 +449,7 @@ class StructureBench:
         bodies = state.bodies_of(self.campaign.bodies)
         found = closed_flexibility(bodies, state, frame.s)
         place = ("flexibility", window_count(self.campaign.hits, window.window))
-        return replace(self, kept=frames_of(self.kept) | {place: found})
+        return replace(self, kept=self.kept | {place: found})
 
 
 def frames_of(kept: dict[Any, Any]) -> dict[Any, Any]:

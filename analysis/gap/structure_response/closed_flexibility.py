@@ -6,7 +6,8 @@ and what is attached at a place leave the closure of the joints as it is: their
 responses are products with the flexibility of the modes, which is closed once.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,10 @@ from jointbench.analysis.gap.structure_response.added_to_bodies import (
 from jointbench.analysis.gap.structure_response.closed_response import close
 from jointbench.analysis.gap.structure_response.joint_state import JointState
 from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.tuned_modes import TunedStiffness
+
+_BESIDE = {"attached", "cables", "gain", "lag", "laws", "points", "sensors"}
+"""Fields of a state that leave the closure of joints and bodies as it is."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,9 +41,16 @@ class ClosedFlexibility:
 
     def holds(self, state: JointState, s: ComplexArray) -> bool:
         """Return whether a state has the same joints and bodies, on the same lines."""
-        one, two = _closed_by(self.state), _closed_by(state)
-        same = len(one) == len(two) and s is self.s
-        return same and all(np.array_equal(a, b) for a, b in zip(one, two, strict=True))
+        closing = (f.name for f in fields(state) if f.name not in _BESIDE)
+        return s is self.s and all(
+            np.array_equal(a, b)
+            for name in closing
+            for a, b in zip(
+                _numbers(getattr(self.state, name)),
+                _numbers(getattr(state, name)),
+                strict=True,
+            )
+        )
 
     def response(
         self, bodies: JointedBodies, state: JointState, columns: FloatArray
@@ -72,14 +84,8 @@ def closed_flexibility(
     return ClosedFlexibility(state, s, close(bodies, bare, s, each).response)
 
 
-def _closed_by(state: JointState) -> list[FloatArray]:
-    """Return all numbers of a state by which its joints and bodies are closed."""
-    own = [state.modulus, state.mass, state.loss, state.compliance, state.damping]
-    own += [state.bolt, np.array(state.foot), state.foot_factor]
-    own.append(np.array([state.exponent, state.damping_exponent]))
-    own.append(np.array([state.bodies is not None], dtype=float))
-    if state.rocking is not None:
-        own.append(state.rocking)
-    if state.tuned is not None:
-        own += [state.tuned.rows, state.tuned.stiffness]
-    return own
+def _numbers(value: Any) -> tuple[Any, Any]:
+    """Return the numbers of a field of a state."""
+    if isinstance(value, TunedStiffness):
+        return value.rows, value.stiffness
+    return value, None

@@ -147,7 +147,7 @@ class StructureSettings:
         "closed modes up to there have a frequency of their own where the modal table "
         "is uncertain",
         "a mode at 1.31 times the band left 1 % of the peaks of a complete bench "
-        "(540009); the filter of the records halves what is at 1.4",
+        "(540009), whose filter passes half of what is at 1.4; others pass less",
     )
     least_phase: float = numerical(
         0.01,

@@ -205,8 +205,7 @@ def _searched(
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
         far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2
-        complete = needless(done[0], screening, base.cost, far_off=far_off)
-        if complete:
+        if complete := needless(done[0], screening, base.cost, far_off=far_off):
             return complete
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
@@ -262,9 +261,9 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         fit: with effects.
         base: fit without effects.
     """
-    if bench.uncertain and as_placed(fit):
-        return False
     if bench.uncertain:
+        if as_placed(fit):
+            return False
         least = STRUCTURE.uncertain_drop * of_table(bench, fit)
         return base.cost - fit.cost > least or takes_differences(bench, fit, base)
     return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2

@@ -109,12 +109,13 @@ def _from_other_frequencies(near: Sequence[_Found], progress: Progress) -> list[
         near: fits to one record of each condition, best first.
         progress: receives one line for the fit, if there is one.
     """
-    if not near or _explains(near[0]) or near[0][0].nonlinear(near[0][1].candidates):
+    if not near or _explains(near[0]):
         return list(near)
-    progress(f"{words_of(near[0][1].candidates)} from other frequencies")
-    if (better := from_other_frequencies(*near[0])) is None:
+    own, fit = near[0]
+    if not own.uncertain or own.nonlinear(fit.candidates):
         return list(near)
-    own, fit = better
+    progress(f"{words_of(fit.candidates)} from other frequencies")
+    own, fit = from_other_frequencies(own, fit) or (own, fit)
     return [(own.at_rest(), without_slopes(fit)), *near[1:]]
 
 

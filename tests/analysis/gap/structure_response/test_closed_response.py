@@ -278,6 +278,35 @@ def test_a_closed_flexibility_gives_the_response_and_slopes_of_the_closure(
         assert np.abs(one - two).max() <= 1e-9 * np.abs(two).max()
 
 
+def test_a_closed_flexibility_is_that_of_its_joints_bodies_and_modes() -> None:
+    """Whatever closes them otherwise is not taken from it."""
+    made = campaign()
+    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
+    plain = base_layout(made.bodies, made.nominal)
+    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
+    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+    tuning = layout.at("frequency of mode 1")
+    base, moved = np.zeros(layout.sd.size), np.zeros(layout.sd.size)
+    moved[tuning] = layout.sd[tuning]
+    start, other = (
+        state_of(made.bodies, made.nominal, layout, x) for x in (base, moved)
+    )
+    s = hit_frame(made.hits, made.hits.force.shape[1]).s
+    flexibility = closed_flexibility(made.bodies, start, s)
+    assert flexibility is not None
+    again = state_of(made.bodies, made.nominal, layout, base)
+    assert flexibility.holds(replace(again, gain=0.1 + again.gain), s)
+    assert not flexibility.holds(again, s.copy())
+    others = [
+        other,
+        replace(start, tuned=None),
+        replace(start, rocking=1e-6 * np.eye(4)),
+        replace(start, damping_exponent=0.5),
+        replace(start, bodies=random_bodies()),
+    ]
+    assert not any(flexibility.holds(one, s) for one in others)
+
+
 def test_a_joint_that_follows_the_torque_has_no_flexibility_of_its_own() -> None:
     """Its closure differs from hit to hit."""
     made = campaign()
