@@ -46,6 +46,7 @@ from jointbench.analysis.gap.second_method.second_method_settings import (
     SECOND_METHOD,
 )
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.weak_settings import WEAK
 from jointbench.simulators.campaigns.campaign_records import make_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 
@@ -72,6 +73,7 @@ PARTS: Mapping[str, Any] = {
     "model error": MODEL_ERROR_SETTINGS,
     "modes and ports": MODAL,
     "bolted bodies": STRUCTURE,
+    "weak effects on bolted bodies": WEAK,
     "raw hits": HITS,
 }
 """The numerical settings by part of the engine."""

@@ -109,11 +109,13 @@ def _mostly(found: Diagnosis) -> str:
 def _explains(found: Diagnosis) -> str:
     several = found.verdict is Finding.NAMED and len(found.effects) > 1
     verb = "explain" if several else "explains"
-    priors = found.evidence is None or found.evidence.view == PRIORS
+    largest, limit = found.null_statistic
+    priors = (
+        largest <= limit if found.evidence is None else found.evidence.view == PRIORS
+    )
     if not found.predicted:
         return f"{verb} the records, but only one condition shows it"
     if found.gap_before.value < SMALL_GAP and not priors:
-        largest, limit = found.null_statistic
         return (
             f"{verb} the small remaining gap: a directed test lowers chi2 by "
             f"{largest:.0f}, noise rarely by more than {limit:.0f}"

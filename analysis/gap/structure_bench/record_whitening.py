@@ -2,7 +2,8 @@
 """Whitening of the records of a bench for what is known of their errors.
 
 A residual over sigma holds what is left of hum, the directions of each hit, and the
-errors of an uncertain modal table, the same in all hits of a point.
+errors of an uncertain modal table: of residues, the same in all hits of a point, or of
+bodies, the same in all records.
 """
 
 from collections.abc import Callable
@@ -17,8 +18,10 @@ from jointbench.analysis.gap.structure_bench.table_whitening import (
     point_whitening,
 )
 from jointbench.analysis.gap.structure_bench.whitening import (
+    CommonWhitening,
     HitWhitening,
     HumWhitening,
+    common_whitening,
     directions_found,
     hum_whitening,
     whitening_of,
@@ -39,6 +42,9 @@ class RecordWhitening:
             known, when nothing but hum is whitened.
         errors: of responses by those of an uncertain modal table; None as above, and
             if it is exact.
+        bodies: responses to errors of the bodies, one sd each [m/s^2], shape
+            (n_records, n_errors, n_channels, n_samples); None where the errors of
+            residues stand for them.
         uncertain: whether the modal table is.
         kept: transforms and whitenings that are used again.
     """
@@ -47,6 +53,7 @@ class RecordWhitening:
     sigma: FloatArray
     directions: FloatArray | None
     errors: ResidueErrors | None
+    bodies: FloatArray | None
     uncertain: bool
     kept: dict[Any, Any]
 
@@ -69,8 +76,11 @@ class RecordWhitening:
         self._steadied(rows)
         if self.directions is None:
             return
+        count = rows.shape[3]
         # A view: channels and samples follow each other.
-        self._white(rows.shape[3])(_flat(rows))
+        self._white(count)(_flat(rows))
+        if self.bodies is not None:
+            self._of_bodies(self.bodies[..., :count])(rows)
 
     def found(self, rows: FloatArray) -> FloatArray:
         """Return the most likely directions of each record, in units of their sd.
@@ -119,6 +129,22 @@ class RecordWhitening:
         found: TableWhitening = self._kept(
             ("table", count), lambda: self._made_of_table(count)
         )
+        return found
+
+    def _of_bodies(self, bodies: FloatArray) -> CommonWhitening:
+        """Return the whitening for errors of the bodies, after that of records.
+
+        Args:
+            bodies: responses to them [m/s^2], in the window.
+        """
+        count = bodies.shape[3]
+
+        def make() -> CommonWhitening:
+            rows = bodies / self.sigma[:, None, :, None]
+            self._white(count)(_flat(rows))
+            return common_whitening(rows)
+
+        found: CommonWhitening = self._kept(("bodies", count), make)
         return found
 
     def _made_of_table(self, count: int) -> TableWhitening:

@@ -81,6 +81,9 @@ class StructureBench:
         policy: thresholds for fits of the bench.
         errors: of responses by those of an uncertain modal table; None if it is exact,
             and before they are computed.
+        bodies: responses to errors of the bodies [m/s^2], shape
+            (n_records, n_errors, n_channels, n_samples), where tests of weak effects
+            weigh the table by them; None elsewhere.
     """
 
     campaign: HitCampaign
@@ -97,6 +100,7 @@ class StructureBench:
     kept: dict[Any, Any]
     policy: Policy = STANDARD
     errors: ResidueErrors | None = None
+    bodies: FloatArray | None = None
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -311,7 +315,7 @@ class StructureBench:
             floor: error of the model, as a share of the peak [-].
             window: to which the bench is fitted, or shorter ones [s]; None for any.
         """
-        moved = replace(self, landing=landing, kept=frames_of(self.kept))
+        moved = replace(self, landing=landing, kept=frames_of(self.kept), bodies=None)
         model = moved.model(base, terms, window)
         rows = direction_rows(model, landing, self.direction_sd)
         peak = np.abs(self.campaign.hits.response).max(axis=2)
@@ -346,7 +350,13 @@ class StructureBench:
         """Whitening of all records for what is known of their errors."""
         hits, uncertain = self.campaign.hits, self.uncertain
         return RecordWhitening(
-            hits, self.sigma, self.directions, self.errors, uncertain, self.kept
+            hits,
+            self.sigma,
+            self.directions,
+            self.errors,
+            self.bodies,
+            uncertain,
+            self.kept,
         )
 
     @property
@@ -379,6 +389,7 @@ class StructureBench:
             sigma=self.sigma[records],
             directions=None if self.directions is None else self.directions[records],
             errors=None if self.errors is None else self.errors.chosen(records),
+            bodies=None if self.bodies is None else self.bodies[records],
             blocks=record_blocks(replace(self.campaign, hits=few)),
             kept={},
         )

@@ -55,6 +55,47 @@ class HumWhitening:
         return rows
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CommonWhitening:
+    """Inverse root of the covariance of all records together.
+
+    Attributes:
+        basis: orthonormal directions, shape (n_directions, n_all_rows).
+        taken: share of each that is removed, shape (n_directions,).
+    """
+
+    basis: FloatArray
+    taken: FloatArray
+
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows in place, (n_records, n, n_channels, n_samples)."""
+        one = _together(rows)
+        one -= ((one @ self.basis.T) * self.taken) @ self.basis
+        records, count, channels, length = rows.shape
+        rows[:] = one.reshape(count, records, channels, length).transpose(1, 0, 2, 3)
+        return rows
+
+
+def common_whitening(scaled: FloatArray) -> CommonWhitening:
+    """Return the whitening for directions that all records have in common.
+
+    Args:
+        scaled: derivatives by directions of unit sd, white otherwise, shape
+            (n_records, n_directions, n_channels, n_samples).
+    """
+    flat = _together(scaled)
+    values, vectors = np.linalg.eigh(flat @ flat.T)
+    kept = values > STRUCTURE.least_variance
+    values, vectors = values[kept], vectors[:, kept]
+    basis = (vectors / np.sqrt(values)).T @ flat
+    return CommonWhitening(basis, 1.0 - 1.0 / np.sqrt(1.0 + values))
+
+
+def _together(rows: FloatArray) -> FloatArray:
+    """Return rows of all records as one, (n_records, n, ...) to (n, n_all_rows)."""
+    return rows.swapaxes(0, 1).reshape(rows.shape[1], -1)
+
+
 def hum_whitening(hum: FloatArray, noise: FloatArray) -> HumWhitening:
     """Return the whitening for what is left of offset and hum.
 

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.structure_response.jointed_bodies import (
     DIRECTIONS,
     JointedBodies,
@@ -57,24 +57,39 @@ class BaseLayout:
         return self.names.index(name)
 
     @property
-    def couplings(self) -> IntArray:
+    def couplings(self) -> slice:
         """Indices of the couplings of closed modes."""
+        own = self.tuned_at
+        alone = 0 if self.tuned is None else self.tuned.omega.size
+        return slice(own.start + alone, own.stop)
+
+    @property
+    def tuned_at(self) -> slice:
+        """Indices of the frequencies and couplings of closed modes."""
         if self.tuned is None:
-            return np.zeros(0, np.int64)
-        names = self.tuned.names[self.tuned.omega.size :]
-        return np.array([self.at(name) for name in names], dtype=np.int64)
+            return slice(0, 0)
+        first = self.at(self.tuned.names[0])
+        return slice(first, first + len(self.tuned.names))
 
     def tuned_in(self, modes: TunedModes, sd: FloatArray) -> "BaseLayout":
-        """Return the layout with as many other closed modes in the place of its own.
+        """Return the layout with other closed modes in the place of its own.
 
         Args:
             modes: the other ones.
-            sd: of all coordinates, shape (n_base,).
+            sd: of their coordinates, shape (n_tuned + n_pairs,).
         """
-        old = () if self.tuned is None else self.tuned.names
-        new = dict(zip(old, modes.names, strict=True))
-        names = tuple(new.get(name, name) for name in self.names)
-        return replace(self, names=names, sd=sd, tuned=modes)
+        own = self.tuned_at
+        return replace(
+            self,
+            names=(*self.names[: own.start], *modes.names, *self.names[own.stop :]),
+            sd=np.concatenate([self.sd[: own.start], sd, self.sd[own.stop :]]),
+            units=(
+                *self.units[: own.start],
+                *("-" for _ in modes.names),
+                *self.units[own.stop :],
+            ),
+            tuned=modes,
+        )
 
 
 def stiffness_name(direction: int) -> str:

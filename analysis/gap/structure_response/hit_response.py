@@ -155,7 +155,7 @@ class HitModel:
         """Return records of a response between sensors and columns."""
         points = self.campaign.hits.point[records]
         found = np.empty((len(records), *self.shape))
-        channels = self._channels().T[:, None]
+        channels = self.transfers().T[:, None]
         for point in np.unique(points):
             own = np.flatnonzero(points == point)
             columns = response[:, :, point * COLUMNS : (point + 1) * COLUMNS]
@@ -169,12 +169,12 @@ class HitModel:
 
     def _pushed(self, response: ComplexArray, forces: ComplexArray) -> FloatArray:
         """Return records of forces across the ports, whose columns are the last."""
-        ports = response[:, :, -forces.shape[1] :] * self._channels()[:, :, None]
+        ports = response[:, :, -forces.shape[1] :] * self.transfers()[:, :, None]
         spectrum = -np.einsum("lcp,rpl->rcl", ports, forces, optimize=True)
         return self.frame.records(spectrum)
 
-    def _channels(self) -> ComplexArray:
-        """Return the transfer from displacement to each channel."""
+    def transfers(self) -> ComplexArray:
+        """Return the transfers from displacement to channels, (n_lines, n_channels)."""
         s = self.frame.s[:, None]
         found = s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.lag)
         for one in self.state.cables:

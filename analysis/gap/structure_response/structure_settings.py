@@ -435,6 +435,24 @@ class StructureSettings:
         "the base of an accelerometer is 10 mm wide; 1.4 +- 0.5 mm was named where "
         "nothing was missing (570009)",
     )
+    least_turn: float = numerical(
+        0.05,
+        "rad",
+        "angle of a sensor below which its direction is not named there",
+        "sensors are aligned by eye",
+    )
+    least_gain: float = numerical(
+        0.03,
+        "-",
+        "error of a gain below which it is not named there",
+        "calibrations in the field are good to 2 or 3 %",
+    )
+    least_cross_axis: float = numerical(
+        0.05,
+        "-",
+        "share of a cross axis below which it is not named there",
+        "data sheets",
+    )
     any_error: float = numerical(
         1e3,
         "of the sd",

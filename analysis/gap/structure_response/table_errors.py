@@ -41,15 +41,17 @@ def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:
     coupling = _coupling(campaign, campaign.bodies, modes)
     shifted = _shifted(campaign, modes, _frequency_sd(coupling, modes))
     near = np.flatnonzero(shifted & (modes.omega < _highest(campaign)))
-    mixing = np.triu(_mixing(coupling, modes)[np.ix_(near, near)])
-    count = int(np.sum(mixing > STRUCTURE.close_mixing))
-    count = max(count, STRUCTURE.least_pairs)
+    count = max(_close_pairs(coupling, modes, near), STRUCTURE.least_pairs)
     mass, _, _ = mass_damping_stiffness(campaign.bodies, state, 1.0)
     return _tuned(mass, coupling, modes, near, count)
 
 
 def tuned_again(
-    campaign: HitCampaign, state: JointState, like: TunedModes
+    campaign: HitCampaign,
+    state: JointState,
+    like: TunedModes,
+    *,
+    every_pair: bool = False,
 ) -> tuple[TunedModes, FloatArray] | None:
     """Return as many of these modes, the lowest, at a state that is tuned already.
 
@@ -59,6 +61,8 @@ def tuned_again(
         campaign: hits, modes and nominal parameters.
         state: with tuned modes of another state.
         like: these.
+        every_pair: whether all pairs that are close at the state have a coupling;
+            otherwise as many as these have, those that mix most.
 
     Returns:
         The modes without what tunes the state, and the coordinates by which it is;
@@ -73,9 +77,18 @@ def tuned_again(
     unshifted = ~_shifted(campaign, modes, _frequency_sd(coupling, modes))
     found = np.sort(np.argsort(unshifted, kind="stable")[:count])
     mass, _, _ = mass_damping_stiffness(bodies, bare, 1.0)
-    tuned = _tuned(mass, coupling, modes, found, len(like.pairs))
+    pairs = len(like.pairs)
+    if every_pair:
+        pairs = max(pairs, _close_pairs(coupling, modes, found))
+    tuned = _tuned(mass, coupling, modes, found, pairs)
     across = state.tuned.rows @ modes.shapes[:, found]
     return tuned, tuned.coordinates_of(across.T @ state.tuned.stiffness @ across)
+
+
+def _close_pairs(coupling: FloatArray, modes: RealModes, chosen: IntArray) -> int:
+    """Return how many pairs of some modes are so close that they have a coupling."""
+    mixing = np.triu(_mixing(coupling, modes)[np.ix_(chosen, chosen)])
+    return int(np.sum(mixing > STRUCTURE.close_mixing))
 
 
 def _highest(campaign: HitCampaign) -> float:
@@ -158,7 +171,7 @@ def _coupling(
     campaign: HitCampaign, bodies: JointedBodies, modes: RealModes
 ) -> FloatArray:
     """Return the variance of the stiffness between closed modes [rad^4/s^4], (n, n)."""
-    beside, diagonal = _stiffness_errors(campaign, bodies)
+    beside, diagonal = stiffness_errors(campaign, bodies)
     x = modes.shapes
     found = (x**2).T @ (beside + np.diag(diagonal)) @ x**2
     for a in range(x.shape[1]):
@@ -167,12 +180,19 @@ def _coupling(
     return np.asarray(np.maximum(found, 0.0))
 
 
-def _stiffness_errors(
+def stiffness_errors(
     campaign: HitCampaign, bodies: JointedBodies
 ) -> tuple[FloatArray, FloatArray]:
     """Return variances of the stiffness of the free bodies beside and on the diagonal.
 
     The shapes of rigid motions are exact.
+
+    Args:
+        campaign: with the uncertainty of the table.
+        bodies: modes.
+
+    Returns:
+        Beside it [rad^4/s^4], shape (n_modes, n_modes), and on it, shape (n_modes,).
     """
     frequency_sd, shape_sd = campaign.nominal.table_sd
     omega = bodies.omega

@@ -32,3 +32,19 @@ def torques_in_turn(hits: HitRecords) -> IntArray:
         own = late, int(k)
         best[point, level] = min(best.get((point, level), own), own)
     return np.array(sorted(k for _, k in best.values()), dtype=np.int64)
+
+
+def hardest(hits: HitRecords, count: int) -> IntArray:
+    """Return records of the highest levels of each point, torques in turn.
+
+    Args:
+        hits: of a campaign.
+        count: levels of each point.
+    """
+    turn = torques_in_turn(hits)
+    chosen: list[int] = []
+    for point in np.unique(hits.point):
+        own = turn[hits.point[turn] == point]
+        levels = hits.level[own]
+        chosen += [int(k) for k in own[np.argsort(-levels)[:count]]]
+    return np.array(sorted(chosen), dtype=np.int64)

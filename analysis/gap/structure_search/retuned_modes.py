@@ -22,7 +22,11 @@ from jointbench.analysis.gap.structure_response.table_errors import tuned_again
 
 
 def retuned(
-    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate]
+    bench: StructureBench,
+    x: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    every_pair: bool = False,
 ) -> tuple[StructureBench, FloatArray]:
     """Return the bench with the closed modes at a solution, and its coordinates there.
 
@@ -33,20 +37,20 @@ def retuned(
         bench: with the closed modes of another state.
         x: base coordinates, then those of the effects.
         candidates: effects.
+        every_pair: see `tuned_again`; the coordinates are as many otherwise.
     """
     layout, count = bench.layout, bench.base_sd.size
     old = layout.tuned
     if old is None:
         return bench, x
     state = bench.state(x[:count], split(x, count, candidates))
-    found = tuned_again(bench.campaign, state, old)
+    found = tuned_again(bench.campaign, state, old, every_pair=every_pair)
     if found is None:
         return bench, x
     new, tuning = found
-    own = np.array([layout.at(name) for name in old.names], dtype=np.int64)
-    sd, moved = layout.sd.copy(), x.copy()
+    own = layout.tuned_at
     # Deviations of the base have scaled all of them, see `with_errors_found`.
-    sd[own] = new.sd * np.median(sd[own] / old.sd)
-    moved[own] = tuning
-    layout = layout.tuned_in(new, sd)
+    scale = np.median(layout.sd[own] / old.sd)
+    moved = np.concatenate([x[: own.start], tuning, x[own.stop :]])
+    layout = layout.tuned_in(new, scale * new.sd)
     return replace(bench, layout=layout, kept=frames_of(bench.kept)), moved

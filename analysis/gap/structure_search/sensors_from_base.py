@@ -55,11 +55,20 @@ def of_table(bench: StructureBench, fit: Fit) -> float:
     return min(chi2_per_dof(bench, fit), 1.0)
 
 
-def as_placed(fit: Fit) -> bool:
-    """Return whether a fit moves a sensor no further than sensors are placed.
+def within_tolerance(fit: Fit) -> bool:
+    """Return whether a fit has a sensor as sensors are: placed, turned and calibrated.
 
     Args:
         fit: with effects.
     """
-    moved = [t for t in fit.terms if t.candidate.effect.name == "wrong_position"]
-    return any(abs(float(t.coordinates[0])) < STRUCTURE.least_move for t in moved)
+    tolerances = {
+        "wrong_position": STRUCTURE.least_move,
+        "wrong_direction": STRUCTURE.least_turn,
+        "gain_error": STRUCTURE.least_gain,
+        "cross_axis": STRUCTURE.least_cross_axis,
+    }
+    return any(
+        abs(float(term.coordinates[0]))
+        < tolerances.get(term.candidate.effect.name, 0.0)
+        for term in fit.terms
+    )

@@ -46,9 +46,9 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
 )
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
-    as_placed,
     of_table,
     sensors_from_base,
+    within_tolerance,
 )
 from jointbench.analysis.gap.structure_search.short_windows import (
     LONGER,
@@ -68,6 +68,10 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     fitted_finely,
     settled,
     with_errors_found,
+)
+from jointbench.analysis.gap.structure_search.weak_effects import (
+    WeakEffects,
+    weak_effects,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
@@ -114,9 +118,15 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     found = _judged_base(*_base_in_whole_records(bench, few, start))
     few = few.at(start, (), few.landing, few.table_floor)
     bench, few = (replace(one, layout=found.whole.layout) for one in (bench, few))
+    weak = _weak(found, progress)
+    if weak is not None and weak.fits:
+        return found.weakly(weak)
+    if weak is not None and weak.complete and found.first.passed:
+        differing = differences_from_base(found.whole, found.base, progress)
+        return _needed_from_base(found, differing, weak.tests)
     from_base = _from_base(found, progress)
     if found.first.passed and not one_effect_takes_much(found.whole, found.base):
-        return _needed_from_base(found, from_base)
+        return _needed_from_base(found, from_base, UNTESTED)
     found = replace(found, whole=found.whole.at_rest())
     return _searched(found, bench, few, start, from_base, progress)
 
@@ -148,11 +158,34 @@ class _Base:
         outcome = _judged(self.complete(screening).outcome, done)
         return StructureOutcome(outcome, done[0].bench, self.whole, self.before)
 
+    def weakly(self, weak: WeakEffects) -> StructureOutcome:
+        """Return the outcome with weak effects, ranked by the costs of their tests."""
+        best, *_ = first_with_slopes(weak.fits)
+        fits = (best.fit, *(one.fit for one in weak.fits[1:]))
+        none = self.complete(weak.tests).outcome
+        outcome = replace(
+            none,
+            bench=best.bench,
+            base=replace(self.base, cost=weak.cost),
+            best=best.fit,
+            acceptance=best.acceptance,
+            ranked=fits,
+            level=fits,
+        )
+        return StructureOutcome(outcome, best.bench, self.whole, self.before)
+
 
 def _judged_base(whole: StructureBench, base: Fit) -> _Base:
     """Return the base with its acceptance."""
     first, before = accept_structure(whole, base, base), fit_summary(whole, base)
     return _Base(whole, without_slopes(base), first, before)
+
+
+def _weak(found: _Base, progress: Progress) -> WeakEffects | None:
+    """Test effects that a table wrong as bodies are does not hide, where it is one."""
+    if not found.whole.uncertain or found.first.excess > found.first.allowed:
+        return None
+    return weak_effects(found.whole, found.base, progress)
 
 
 def _from_base(found: _Base, progress: Progress) -> list[JudgedFit]:
@@ -164,12 +197,14 @@ def _from_base(found: _Base, progress: Progress) -> list[JudgedFit]:
     return [*sensors, *differences_from_base(whole, base, progress)]
 
 
-def _needed_from_base(found: _Base, from_base: Sequence[JudgedFit]) -> StructureOutcome:
+def _needed_from_base(
+    found: _Base, from_base: Sequence[JudgedFit], tests: Screening
+) -> StructureOutcome:
     """Return the outcome beside an accepted base, with what it needs."""
     needed = [one for one in from_base if _needed(one, found.base)]
     if not needed:
-        return found.complete(UNTESTED)
-    return found.judged(first_with_slopes(best_first(needed)), UNTESTED)
+        return found.complete(tests)
+    return found.judged(first_with_slopes(best_first(needed)), tests)
 
 
 def _searched(
@@ -262,7 +297,7 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         base: fit without effects.
     """
     if bench.uncertain:
-        if as_placed(fit):
+        if within_tolerance(fit):
             return False
         least = STRUCTURE.uncertain_drop * of_table(bench, fit)
         return base.cost - fit.cost > least or takes_differences(bench, fit, base)

@@ -154,7 +154,7 @@ def at_rest(one: JudgedFit) -> JudgedFit:
 
 
 def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
-    """Return a fit with its slopes, which a verdict needs.
+    """Return a fit with its slopes, which a verdict needs, and its cost.
 
     Args:
         bench: on which it was found.
@@ -162,7 +162,9 @@ def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
     """
     if fit.jacobian.size:
         return fit
-    return minimise(make_problem(bench, fit.candidates), fit.x, FULL, iterations=0)
+    problem = make_problem(bench, fit.candidates)
+    found = minimise(problem, fit.x, FULL, iterations=0)
+    return replace(found, cost=fit.cost)
 
 
 def leaves_much(best: JudgedFit) -> bool:

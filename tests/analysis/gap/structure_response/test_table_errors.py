@@ -60,7 +60,7 @@ def test_a_coupling_turns_two_modes_as_stiffness_between_them_does() -> None:
     tuned = layout.tuned
     assert tuned is not None and len(tuned.pairs) == 2
     base = np.zeros(layout.sd.size)
-    base[layout.couplings[0]] = 0.03
+    base[layout.couplings.start] = 0.03
     turned = state_of(made.bodies, made.nominal, layout, base)
     i, j = tuned.pairs[0]
     own, between = tuned.omega[[i, j]] ** 2, 2.0 * np.prod(tuned.omega[[i, j]])

@@ -15,9 +15,9 @@ from jointbench.analysis.gap.structure_search.differences_from_base import (
     takes_differences,
 )
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
-    as_placed,
     of_table,
     sensors_from_base,
+    within_tolerance,
 )
 from jointbench.analysis.gap.structure_search.short_windows import SHORT
 from jointbench.analysis.gap.structure_search.structure_fits import settled
@@ -67,7 +67,9 @@ def test_damping_that_follows_the_torque_is_no_error_of_a_table(
     assert takes(best.bench, best.fit, base)
 
 
-def test_a_sensor_a_millimetre_off_is_as_placed(uncertain: StructureBench) -> None:
+def test_a_sensor_a_millimetre_off_is_within_tolerance(
+    uncertain: StructureBench,
+) -> None:
     """It is not named beside a base that explains the hits; 5 mm off is a fault."""
     effect = next(e.effect for e in SENSOR_EFFECTS if e.effect.name == "wrong_position")
     place = Candidate(effect, Site("channel", "A0"))
@@ -78,6 +80,6 @@ def test_a_sensor_a_millimetre_off_is_as_placed(uncertain: StructureBench) -> No
         replace(base, candidates=(place,), x=np.append(x, [distance, 0.0]), cost=0.0)
         for distance in (-1e-3, 5e-3)
     )
-    assert as_placed(near) and not as_placed(off)
+    assert within_tolerance(near) and not within_tolerance(off)
     assert not takes(uncertain, near, base)
     assert takes(uncertain, off, base)

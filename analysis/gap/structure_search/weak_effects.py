@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""Weak effects beside a base that explains the hits, the table wrong as bodies are.
+
+Errors of residues are taken as independent in all modes, points and channels, which
+holds for any table, and hides what is not larger than they are. A table of bodies has
+far fewer errors, each in all records at once (see `body_errors`), and beside these an
+effect at one channel or place stands out by much more. No table need be of that kind:
+an effect counts only where it leaves no more than such a table does.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.judgement.rivals import rivals
+from jointbench.analysis.gap.model.effect import Candidate, words_of
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.candidate_starts import along
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import Screening, screen
+from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.body_errors import (
+    responses_to_body_errors,
+)
+from jointbench.analysis.gap.structure_response.closed_flexibility import (
+    closed_flexibility,
+)
+from jointbench.analysis.gap.structure_response.residue_errors import (
+    separable,
+    typical_peaks,
+)
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.differences_from_base import differs
+from jointbench.analysis.gap.structure_search.fits_from_base import WINDOW
+from jointbench.analysis.gap.structure_search.records_of_search import hardest
+from jointbench.analysis.gap.structure_search.retuned_modes import retuned
+from jointbench.analysis.gap.structure_search.sensors_from_base import within_tolerance
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import settled
+from jointbench.analysis.gap.structure_search.weak_settings import WEAK
+from jointbench.analysis.gap.structure_search.whole_records import (
+    JudgedFit,
+    at_rest,
+    best_first,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WeakEffects:
+    """What is found beside a base, the table wrong as bodies are.
+
+    Attributes:
+        fits: accepted ones of weak effects that the tests do not separate, best first,
+            at rest, with the costs of the tests.
+        cost: of the base in the tests.
+        tests: directed ones.
+        complete: whether no effect counts, and the base leaves no more than errors of
+            bodies do, or what it leaves resembles no effect at all.
+    """
+
+    fits: tuple[JudgedFit, ...]
+    cost: float
+    tests: Screening
+    complete: bool
+
+
+def weak_effects(
+    whole: StructureBench, base: Fit, progress: Progress
+) -> WeakEffects | None:
+    """Test weak effects beside a base, and fit those that show; None if it cannot be.
+
+    Args:
+        whole: all records, on which the base was found and explains them.
+        base: fit without effects.
+        progress: receives one line for each step.
+    """
+    progress("directed tests of weak effects")
+    few = whole.chosen(hardest(whole.campaign.hits, WEAK.levels))
+    few, start = retuned(few, base.x, (), every_pair=True)
+    own = weighed_by_bodies(few, start)
+    if own is None:
+        return None
+    steps = WEAK.iterations
+    near = minimise(make_problem(own, ()), start, WINDOW, iterations=steps)
+    weak = [c for c in own.candidates if _may_be_weak(own, c)]
+    tests = screen(own.for_tests(near, WINDOW), near, weak, resolution=WINDOW)
+    best = _explaining(own, near, tests, progress)
+    if not best:
+        unlike = _nothing_like_it(own, near, tests)
+        return WeakEffects((), near.cost, tests, complete=unlike)
+    del own, few
+    done = [_in_all_records(whole, base, one, progress) for one in best]
+    accepted = [one for one in done if one.acceptance.passed]
+    ranked = tuple(best_first(accepted))
+    return WeakEffects(ranked, near.cost, tests, complete=False)
+
+
+def weighed_by_bodies(bench: StructureBench, base: FloatArray) -> StructureBench | None:
+    """Return a bench that weighs its table by errors of bodies.
+
+    What these leave, of second order, is a share of the errors of residues and a floor.
+
+    Args:
+        bench: some records, about where their hits landed.
+        base: coordinates of a fit without effects, shape (n_base,).
+
+    Returns:
+        The bench for the window of the tests; None where the joints follow the torque.
+    """
+    model = bench.model(base, (), WINDOW.window)
+    bodies = bench.campaign.bodies
+    flexibility = closed_flexibility(bodies, model.state, model.frame.s)
+    if flexibility is None or bench.errors is None:
+        return None
+    hits = bench.campaign.hits
+    peak = typical_peaks(bench.campaign, np.abs(hits.response).max(axis=2))
+    floor = WEAK.floor * np.sqrt(bench.coherence) * peak
+    sd = WEAK.share * bench.errors.sd
+    return replace(
+        bench,
+        sigma=separable(bench.campaign, np.hypot(hits.noise, floor)),
+        errors=replace(bench.errors, sd=sd),
+        bodies=responses_to_body_errors(model, flexibility, bench.landing),
+        kept={},
+    )
+
+
+def beyond_noise(bench: StructureBench, fit: Fit) -> float:
+    """Return what a fit leaves beyond noise, over as many numbers as records have.
+
+    Args:
+        bench: that weighs its table by errors of bodies.
+        fit: in a window.
+    """
+    noise = bench.campaign.hits.noise / bench.sigma
+    samples = fit.residual.size / noise.size
+    left = fit.chi2 - samples * float(np.sum(noise**2))
+    return left * bench.coherence / fit.residual.size
+
+
+def _nothing_like_it(own: StructureBench, near: Fit, tests: Screening) -> bool:
+    """Return whether a base leaves little, or something that no effect takes part of.
+
+    A base may end beside its minimum, with a closed frequency lost.
+    """
+    unlike = tests.largest < WEAK.resemblance * near.cost
+    return unlike or beyond_noise(own, near) < WEAK.left
+
+
+def _may_be_weak(bench: StructureBench, candidate: Candidate) -> bool:
+    """Return whether an effect has no tests of its own beside a base.
+
+    Where hits landed is found from them, hit by hit.
+    """
+    aimed = {e.effect.name for e in bench.entries if e.aimed}
+    return candidate.effect.name not in aimed and not differs(bench, candidate)
+
+
+def _explaining(
+    own: StructureBench, near: Fit, found: Screening, progress: Progress
+) -> list[Fit]:
+    """Return fits that leave no more than errors of bodies do, without worse rivals.
+
+    Args:
+        own: records of the tests.
+        near: fit without effects.
+        found: tests beside it.
+        progress: receives one line for each fit.
+    """
+    fits: list[Fit] = []
+    least = max(WEAK.drop, WEAK.rival * found.largest)
+    for candidate in found.leaders(STRUCTURE.whole_fits):
+        tests = found.best(candidate, STRUCTURE.starts_kept)
+        if tests[0].drop < least:
+            break
+        progress(f"{words_of((candidate,))} as a weak effect")
+        problem = make_problem(own, (candidate,))
+        starts = [along(problem, near, test, WINDOW) for test in tests]
+        start = min(starts, key=lambda one: one.cost)
+        steps = STRUCTURE.approach_iterations
+        fits.append(minimise(problem, start.x, WINDOW, iterations=steps))
+    fits.sort(key=lambda one: score(own, one))
+    if not fits or not _counts(own, near, fits[0]):
+        return []
+    return [one for one in rivals(own, fits) if _counts(own, near, one)]
+
+
+def _counts(own: StructureBench, near: Fit, fit: Fit) -> bool:
+    """Return whether a fit takes enough, and leaves no more than errors of bodies."""
+    left = beyond_noise(own, fit)
+    least = WEAK.drop * max(left, 1.0)
+    enough = near.cost - fit.cost > least and not within_tolerance(fit)
+    return enough and left < WEAK.left
+
+
+def _in_all_records(
+    whole: StructureBench, base: Fit, weak: Fit, progress: Progress
+) -> JudgedFit:
+    """Return the fit of a weak effect to all records, at rest.
+
+    With errors of residues, these show it less well than the tests do, whose result it
+    keeps as a prior.
+    """
+    candidates = (_as_found(weak),)
+    progress(f"{words_of(candidates)} in all records")
+    start = np.concatenate([base.base, weak.x[weak.n_base :]])
+    bench, fit = settled(whole, start, candidates, near=True)
+    judged = accept_structure(bench, fit, base)
+    fit = replace(fit, cost=weak.cost)
+    return at_rest(JudgedFit(bench.at_rest(), fit, judged))
+
+
+def _as_found(weak: Fit) -> Candidate:
+    """Return the effect of a fit, its parameters with what was found as priors."""
+    (candidate,) = weak.candidates
+    sd = np.sqrt(np.diag(weak.covariance))[weak.n_base :]
+    known = zip(candidate.effect.parameters, weak.x[weak.n_base :], sd, strict=True)
+    parameters = tuple(
+        replace(p, prior=(p.decode(float(x)), float(own))) for p, x, own in known
+    )
+    return replace(candidate, effect=replace(candidate.effect, parameters=parameters))
