@@ -11,12 +11,12 @@ where H_i and H_j are the closed responses of channels and hits in these modes (
 Kapoor, AIAA J. 6 (1968), eq. 3, summed over the modes of the closed structure).
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.analysis.gap.structure_response.closed_flexibility import (
-    ClosedFlexibility,
-)
+from jointbench.analysis.gap.structure_response.closed_response import close
 from jointbench.analysis.gap.structure_response.hit_response import HitModel
 from jointbench.analysis.gap.structure_response.landing import (
     landing_weights,
@@ -26,14 +26,11 @@ from jointbench.analysis.gap.structure_response.structure_settings import STRUCT
 from jointbench.analysis.gap.structure_response.table_errors import stiffness_errors
 
 
-def responses_to_body_errors(
-    model: HitModel, flexibility: ClosedFlexibility, landing: FloatArray
-) -> FloatArray:
+def responses_to_body_errors(model: HitModel, landing: FloatArray) -> FloatArray:
     """Return the change of the responses by each error of the bodies, one sd each.
 
     Args:
-        model: of the hits in a window.
-        flexibility: of its joints.
+        model: of the hits in a window, at the joints of one torque.
         landing: tilts [rad] and offsets [m] of each hit, shape (n_records, 4).
 
     Returns:
@@ -41,11 +38,14 @@ def responses_to_body_errors(
     """
     bodies = model.state.bodies_of(model.campaign.bodies)
     rows = model.state.sensors_of(bodies)
+    each = np.eye(bodies.omega.size)
+    state = replace(model.state, sensors=each)
+    flexibility = close(bodies, state, model.frame.s, each).response
     struck = np.stack([point_columns(p) for p in model.state.points_of(bodies)])
     struck = struck[model.campaign.hits.point]
     columns = np.einsum("rc,rcn->rn", landing_weights(landing), struck)
-    left = (rows @ flexibility.modes) * model.transfers()[:, :, None]
-    right = np.einsum("lnm,rm->rln", flexibility.modes, columns)
+    left = (rows @ flexibility) * model.transfers()[:, :, None]
+    right = np.einsum("lnm,rm->rln", flexibility, columns)
     right *= model.frame.force[:, :, None]
     first, second, stiffness = _elements(model)
     found = np.empty((len(columns), first.size, *model.shape))

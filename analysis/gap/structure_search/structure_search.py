@@ -71,6 +71,7 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 )
 from jointbench.analysis.gap.structure_search.weak_effects import (
     WeakEffects,
+    supported_fits,
     weak_effects,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
@@ -123,12 +124,12 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         return found.weakly(weak)
     if weak is not None and weak.complete and found.first.passed:
         differing = differences_from_base(found.whole, found.base, progress)
-        return _needed_from_base(found, differing, weak.tests)
+        return _needed_from_base(found, differing, weak)
     from_base = _from_base(found, progress)
     if found.first.passed and not one_effect_takes_much(found.whole, found.base):
-        return _needed_from_base(found, from_base, UNTESTED)
+        return _needed_from_base(found, from_base, weak)
     found = replace(found, whole=found.whole.at_rest())
-    return _searched(found, bench, few, start, from_base, progress)
+    return _searched(found, bench, few, start, from_base, weak, progress)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,6 +158,21 @@ class _Base:
         """Return the outcome with fits of effects, best first."""
         outcome = _judged(self.complete(screening).outcome, done)
         return StructureOutcome(outcome, done[0].bench, self.whole, self.before)
+
+    def doubtful(self, best: JudgedFit, screening: Screening) -> StructureOutcome:
+        """Return the outcome that an effect explains the hits in one way alone.
+
+        Args:
+            best: fit that tests of weak effects do not support.
+            screening: directed tests that led to it.
+        """
+        none = self.complete(screening)
+        words = words_of(best.fit.candidates)
+        reason = (
+            f"{words} does, but leaves what no error of the modal table of a body is"
+        )
+        refused = replace(self.first, passed=False, reason=reason, unexplained=True)
+        return replace(none, outcome=replace(none.outcome, acceptance=refused))
 
     def weakly(self, weak: WeakEffects) -> StructureOutcome:
         """Return the outcome with weak effects, ranked by the costs of their tests."""
@@ -198,13 +214,16 @@ def _from_base(found: _Base, progress: Progress) -> list[JudgedFit]:
 
 
 def _needed_from_base(
-    found: _Base, from_base: Sequence[JudgedFit], tests: Screening
+    found: _Base, from_base: Sequence[JudgedFit], weak: WeakEffects | None
 ) -> StructureOutcome:
     """Return the outcome beside an accepted base, with what it needs."""
-    needed = [one for one in from_base if _needed(one, found.base)]
+    tests = UNTESTED if weak is None else weak.tests
+    needed = best_first([one for one in from_base if _needed(one, found.base)])
     if not needed:
         return found.complete(tests)
-    return found.judged(first_with_slopes(best_first(needed)), tests)
+    if not (supported := supported_fits(needed, weak)):
+        return found.doubtful(needed[0], tests)
+    return found.judged(first_with_slopes(supported), tests)
 
 
 def _searched(
@@ -213,6 +232,7 @@ def _searched(
     few: StructureBench,
     start: FloatArray,
     from_base: Sequence[JudgedFit],
+    weak: WeakEffects | None,
     progress: Progress,
 ) -> StructureOutcome:
     """Search for missing effects in short windows, and fit the best to all records.
@@ -223,6 +243,7 @@ def _searched(
         few: one record of each condition.
         start: base coordinates as fitted in short windows.
         from_base: fits of effects from the base.
+        weak: tests of weak effects beside the base, where it leaves little.
         progress: receives one line for each step.
     """
     base = found.base
@@ -236,6 +257,9 @@ def _searched(
         done = [one for one in done if _needed(one, base)]
     if not done:
         return found.complete(screening)
+    if not (supported := supported_fits(done, weak)):
+        return found.doubtful(done[0], screening)
+    done = supported
     done = first_with_slopes(done)
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):

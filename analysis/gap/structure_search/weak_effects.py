@@ -8,13 +8,14 @@ effect at one channel or place stands out by much more. No table need be of that
 an effect counts only where it leaves no more than such a table does.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.rivals import rivals
-from jointbench.analysis.gap.model.effect import Candidate, words_of
+from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.candidate_starts import along
@@ -24,9 +25,6 @@ from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.body_errors import (
     responses_to_body_errors,
-)
-from jointbench.analysis.gap.structure_response.closed_flexibility import (
-    closed_flexibility,
 )
 from jointbench.analysis.gap.structure_response.residue_errors import (
     separable,
@@ -55,18 +53,43 @@ class WeakEffects:
     """What is found beside a base, the table wrong as bodies are.
 
     Attributes:
+        few: records of the tests, as the base weighs them.
+        x: coordinates of the base in the tests, shape (n_base,).
+        left: what it leaves beyond noise.
+        cost: of it in the tests.
+        tests: directed ones.
         fits: accepted ones of weak effects that the tests do not separate, best first,
             at rest, with the costs of the tests.
-        cost: of the base in the tests.
-        tests: directed ones.
         complete: whether no effect counts, and the base leaves no more than errors of
             bodies do, or what it leaves resembles no effect at all.
     """
 
-    fits: tuple[JudgedFit, ...]
+    few: StructureBench
+    x: FloatArray
+    left: float
     cost: float
     tests: Screening
-    complete: bool
+    fits: tuple[JudgedFit, ...] = ()
+    complete: bool = False
+
+    def supports(self, fit: Fit) -> bool:
+        """Return whether an effect takes a good part of what the base leaves here.
+
+        An effect that explains the hits beside errors of residues of any kind may be
+        one that these errors imitate. Where the table is wrong otherwise than bodies
+        are, the base leaves much, and an effect that is there takes part of it.
+
+        Args:
+            fit: of effects to all records.
+        """
+        own = weighed_by_bodies(self.few, self.x)
+        if own is None or self.left < WEAK.left:
+            return True
+        problem = make_problem(own, fit.candidates)
+        start = np.concatenate([self.x, fit.x[fit.n_base :]])
+        steps = STRUCTURE.approach_iterations
+        found = minimise(problem, start, WINDOW, iterations=steps)
+        return beyond_noise(own, found) < max(WEAK.left, WEAK.part * self.left)
 
 
 def weak_effects(
@@ -89,33 +112,58 @@ def weak_effects(
     near = minimise(make_problem(own, ()), start, WINDOW, iterations=steps)
     weak = [c for c in own.candidates if _may_be_weak(own, c)]
     tests = screen(own.for_tests(near, WINDOW), near, weak, resolution=WINDOW)
+    found = WeakEffects(few, near.x, beyond_noise(own, near), near.cost, tests)
     best = _explaining(own, near, tests, progress)
     if not best:
-        unlike = _nothing_like_it(own, near, tests)
-        return WeakEffects((), near.cost, tests, complete=unlike)
-    del own, few
+        unlike = tests.largest < WEAK.resemblance * near.cost
+        return replace(found, complete=unlike or found.left < WEAK.left)
+    del own
     done = [_in_all_records(whole, base, one, progress) for one in best]
-    accepted = [one for one in done if one.acceptance.passed]
-    ranked = tuple(best_first(accepted))
-    return WeakEffects(ranked, near.cost, tests, complete=False)
+    accepted = best_first([one for one in done if one.acceptance.passed])
+    return replace(found, fits=tuple(accepted))
 
 
-def weighed_by_bodies(bench: StructureBench, base: FloatArray) -> StructureBench | None:
+def supported_fits(
+    done: Sequence[JudgedFit], weak: WeakEffects | None
+) -> list[JudgedFit]:
+    """Return fits without accepted ones that tests of weak effects do not support.
+
+    Laws and effects of the torque have no such tests.
+
+    Args:
+        done: fits to all records, best first.
+        weak: these tests; None where there are none.
+    """
+    if weak is None:
+        return list(done)
+    return [
+        one
+        for one in done
+        if not one.acceptance.passed
+        or one.bench.nonlinear(one.fit.candidates)
+        or any(differs(one.bench, c) for c in one.fit.candidates)
+        or weak.supports(one.fit)
+    ]
+
+
+def weighed_by_bodies(
+    bench: StructureBench, base: FloatArray, terms: Sequence[Term] = ()
+) -> StructureBench | None:
     """Return a bench that weighs its table by errors of bodies.
 
     What these leave, of second order, is a share of the errors of residues and a floor.
 
     Args:
         bench: some records, about where their hits landed.
-        base: coordinates of a fit without effects, shape (n_base,).
+        base: coordinates of a fit, shape (n_base,).
+        terms: its effects.
 
     Returns:
         The bench for the window of the tests; None where the joints follow the torque.
     """
-    model = bench.model(base, (), WINDOW.window)
-    bodies = bench.campaign.bodies
-    flexibility = closed_flexibility(bodies, model.state, model.frame.s)
-    if flexibility is None or bench.errors is None:
+    model = bench.model(base, terms, WINDOW.window)
+    follows = model.state.exponent or model.state.damping_exponent
+    if follows or bench.errors is None:
         return None
     hits = bench.campaign.hits
     peak = typical_peaks(bench.campaign, np.abs(hits.response).max(axis=2))
@@ -125,7 +173,7 @@ def weighed_by_bodies(bench: StructureBench, base: FloatArray) -> StructureBench
         bench,
         sigma=separable(bench.campaign, np.hypot(hits.noise, floor)),
         errors=replace(bench.errors, sd=sd),
-        bodies=responses_to_body_errors(model, flexibility, bench.landing),
+        bodies=responses_to_body_errors(model, bench.landing),
         kept={},
     )
 
@@ -141,15 +189,6 @@ def beyond_noise(bench: StructureBench, fit: Fit) -> float:
     samples = fit.residual.size / noise.size
     left = fit.chi2 - samples * float(np.sum(noise**2))
     return left * bench.coherence / fit.residual.size
-
-
-def _nothing_like_it(own: StructureBench, near: Fit, tests: Screening) -> bool:
-    """Return whether a base leaves little, or something that no effect takes part of.
-
-    A base may end beside its minimum, with a closed frequency lost.
-    """
-    unlike = tests.largest < WEAK.resemblance * near.cost
-    return unlike or beyond_noise(own, near) < WEAK.left
 
 
 def _may_be_weak(bench: StructureBench, candidate: Candidate) -> bool:
@@ -185,9 +224,41 @@ def _explaining(
         steps = STRUCTURE.approach_iterations
         fits.append(minimise(problem, start.x, WINDOW, iterations=steps))
     fits.sort(key=lambda one: score(own, one))
-    if not fits or not _counts(own, near, fits[0]):
+    if not fits:
+        return []
+    if fits[0].cost < WEAK.part * near.cost:
+        own, near, fits = _once_more(own, near, fits)
+    if not _counts(own, near, fits[0]):
         return []
     return [one for one in rivals(own, fits) if _counts(own, near, one)]
+
+
+def _once_more(
+    own: StructureBench, near: Fit, fits: Sequence[Fit]
+) -> tuple[StructureBench, Fit, list[Fit]]:
+    """Return base and fits with what the best one shows: errors, and where hits landed.
+
+    A base without a strong effect is far from that with it, and errors of bodies and
+    directions of hits are of first order.
+
+    Args:
+        own: records of the tests.
+        near: fit without effects.
+        fits: of effects, best first.
+    """
+    best, window = fits[0], WINDOW.window
+    landing, _ = own.landed(best.base, best.terms, window)
+    floor = own.table_floor
+    about = own.at(best.base, best.terms, landing, floor, window)
+    moved = weighed_by_bodies(about, best.base, best.terms)
+    if moved is None:
+        return own, near, list(fits)
+    steps = STRUCTURE.approach_iterations
+    again = [
+        minimise(make_problem(moved, one.candidates), one.x, WINDOW, iterations=steps)
+        for one in (near, *fits)
+    ]
+    return moved, again[0], sorted(again[1:], key=lambda one: score(moved, one))
 
 
 def _counts(own: StructureBench, near: Fit, fit: Fit) -> bool:

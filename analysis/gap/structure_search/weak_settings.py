@@ -45,6 +45,13 @@ class WeakEffectSettings:
         "no effect",
         "complete benches whose base left 8 and 44 had 0.2 %, hidden effects 8 to 80 %",
     )
+    part: float = numerical(
+        0.5,
+        "of what the base leaves",
+        "cost of a fit below which errors of bodies are those about it, and what an "
+        "effect named by other tests may leave here",
+        "a wrong name left more than this of 19 (703001), true effects 3 to 12 %",
+    )
     rival: float = numerical(
         0.5,
         "of the largest",

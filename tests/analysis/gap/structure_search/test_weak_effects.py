@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -25,13 +26,21 @@ from jointbench.analysis.gap.structure_search.fits_from_base import WINDOW
 from jointbench.analysis.gap.structure_search.records_of_search import hardest
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sensors_from_base import sensors_from_base
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
 from jointbench.analysis.gap.structure_search.structure_fits import settled
 from jointbench.analysis.gap.structure_search.weak_effects import (
     beyond_noise,
+    supported_fits,
     weak_effects,
     weighed_by_bodies,
 )
-from jointbench.analysis.gap.structure_search.whole_records import with_slopes
+from jointbench.analysis.gap.structure_search.weak_settings import WEAK
+from jointbench.analysis.gap.structure_search.whole_records import (
+    JudgedFit,
+    with_slopes,
+)
 
 GAIN = 0.04
 
@@ -49,11 +58,7 @@ def with_responses(bench: StructureBench, response: FloatArray) -> StructureBenc
 def body_rows(bench: StructureBench) -> FloatArray:
     """Return whole responses to errors of the bodies."""
     x = np.zeros(bench.base_sd.size)
-    model = bench.model(x, (), None)
-    bodies = bench.campaign.bodies
-    flexibility = closed_flexibility(bodies, model.state, model.frame.s)
-    assert flexibility is not None
-    return responses_to_body_errors(model, flexibility, bench.landing)
+    return responses_to_body_errors(bench.model(x, (), None), bench.landing)
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +68,11 @@ def drawn(uncertain: StructureBench) -> StructureBench:
     size = np.random.default_rng(513).normal(size=rows.shape[1])
     off = np.einsum("e,rect->rct", size, rows)
     return with_responses(uncertain, uncertain.campaign.hits.response + off)
+
+
+def accepted(bench: StructureBench, fit: Fit) -> Acceptance:
+    """Return an acceptance that passed."""
+    return replace(accept_structure(bench, fit, fit), passed=True, reason="")
 
 
 def base_of(bench: StructureBench) -> tuple[StructureBench, Fit]:
@@ -129,6 +139,33 @@ def test_a_small_gain_is_found_beside_errors_of_bodies(drawn: StructureBench) ->
     sd = np.sqrt(best.fit.covariance[-1, -1])
     assert abs(best.fit.x[-1] - GAIN) < 3.0 * sd
     assert sd < 0.7 * np.sqrt(beside.covariance[-1, -1])
+
+
+def test_a_name_is_supported_where_it_takes_what_the_base_leaves(
+    drawn: StructureBench,
+) -> None:
+    """A gain of 30 % does; a delay of another channel does not."""
+    larger = drawn.campaign.hits.response.copy()
+    larger[:, 1] *= 1.3
+    _, base = base_of(drawn)
+    whole = with_responses(drawn, larger)
+    weak = weak_effects(whole, base, _silent)
+    assert weak is not None
+    assert weak.left > WEAK.left
+    true, other = (
+        next(c for c in whole.candidates if c.label == f"{name}@channel:{channel}")
+        for name, channel in (
+            ("gain_error", whole.campaign.bodies.channels[1]),
+            ("delay", whole.campaign.bodies.channels[0]),
+        )
+    )
+    right = replace(base, candidates=(true,), x=np.append(base.x, 0.2))
+    wrong = replace(base, candidates=(other,), x=np.append(base.x, 0.1))
+    assert weak.supports(right)
+    assert not weak.supports(wrong)
+    refused = JudgedFit(whole, wrong, accepted(whole, base))
+    assert supported_fits([refused], weak) == []
+    assert supported_fits([refused], None) == [refused]
 
 
 def test_errors_that_no_body_has_leave_more(drawn: StructureBench) -> None:
