@@ -16,11 +16,13 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
+from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.candidate_starts import along
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
+from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.body_errors import (
@@ -88,7 +90,7 @@ class WeakEffects:
         problem = make_problem(own, fit.candidates)
         start = np.concatenate([self.x, fit.x[fit.n_base :]])
         steps = STRUCTURE.approach_iterations
-        found = minimise(problem, start, WINDOW, iterations=steps)
+        found = completed(minimise(problem, start, WINDOW, iterations=steps))
         return beyond_noise(own, found) < max(WEAK.left, WEAK.part * self.left)
 
 
@@ -112,15 +114,16 @@ def weak_effects(
     near = minimise(make_problem(own, ()), start, WINDOW, iterations=steps)
     weak = [c for c in own.candidates if _may_be_weak(own, c)]
     tests = screen(own.for_tests(near, WINDOW), near, weak, resolution=WINDOW)
-    found = WeakEffects(few, near.x, beyond_noise(own, near), near.cost, tests)
-    best = _explaining(own, near, tests, progress)
+    ended = completed(near)
+    found = WeakEffects(few, near.x, beyond_noise(own, ended), ended.cost, tests)
+    near, best = _explaining(own, near, tests, progress)
     if not best:
-        unlike = tests.largest < WEAK.resemblance * near.cost
+        unlike = tests.largest < WEAK.resemblance * found.cost
         return replace(found, complete=unlike or found.left < WEAK.left)
     del own
     done = [_in_all_records(whole, base, one, progress) for one in best]
     accepted = best_first([one for one in done if one.acceptance.passed])
-    return replace(found, fits=tuple(accepted))
+    return replace(found, cost=near.cost, fits=tuple(accepted))
 
 
 def supported_fits(
@@ -191,6 +194,29 @@ def beyond_noise(bench: StructureBench, fit: Fit) -> float:
     return left * bench.coherence / fit.residual.size
 
 
+def completed(fit: Fit) -> Fit:
+    """Return a fit at the end of the step that its linear model promises.
+
+    Frequencies of closed modes slip by a radian within a thousandth, so that a descent
+    creeps where base and effect exchange stiffness or mass, while the cost is nearly
+    quadratic in the effect and in what the records determine. The base stays.
+
+    Args:
+        fit: with its slopes.
+    """
+    gradient = fit.jacobian.T @ fit.residual + fit.prior * (fit.x - fit.centre)
+    step = -fit.covariance @ gradient
+    longest = SEARCH.longest_step
+    x = fit.x.copy()
+    x[fit.n_base :] += np.clip(step[fit.n_base :], -longest, longest)
+    return replace(
+        fit,
+        x=x,
+        residual=fit.residual + fit.jacobian @ step,
+        cost=fit.cost + float(gradient @ step),
+    )
+
+
 def _may_be_weak(bench: StructureBench, candidate: Candidate) -> bool:
     """Return whether an effect has no tests of its own beside a base.
 
@@ -202,8 +228,11 @@ def _may_be_weak(bench: StructureBench, candidate: Candidate) -> bool:
 
 def _explaining(
     own: StructureBench, near: Fit, found: Screening, progress: Progress
-) -> list[Fit]:
-    """Return fits that leave no more than errors of bodies do, without worse rivals.
+) -> tuple[Fit, list[Fit]]:
+    """Return the base, and fits that leave no more than errors of bodies do.
+
+    Of these fits, the best one and those that are not distinguished from it; costs are
+    those about the best one where it takes much.
 
     Args:
         own: records of the tests.
@@ -224,13 +253,13 @@ def _explaining(
         steps = STRUCTURE.approach_iterations
         fits.append(minimise(problem, start.x, WINDOW, iterations=steps))
     fits.sort(key=lambda one: score(own, one))
-    if not fits:
-        return []
-    if fits[0].cost < WEAK.part * near.cost:
+    if fits and fits[0].cost < WEAK.part * near.cost:
         own, near, fits = _once_more(own, near, fits)
-    if not _counts(own, near, fits[0]):
-        return []
-    return [one for one in rivals(own, fits) if _counts(own, near, one)]
+    near, fits = completed(near), [completed(one) for one in fits]
+    fits.sort(key=lambda one: score(own, one))
+    if not fits or not _counts(own, near, fits[0]):
+        return near, []
+    return near, [one for one in rivals(own, fits) if _counts(own, near, one)]
 
 
 def _once_more(
@@ -287,11 +316,23 @@ def _in_all_records(
 
 
 def _as_found(weak: Fit) -> Candidate:
-    """Return the effect of a fit, its parameters with what was found as priors."""
+    """Return the effect of a fit, its parameters with what was found as priors.
+
+    Parameters that change no record keep theirs.
+    """
     (candidate,) = weak.candidates
-    sd = np.sqrt(np.diag(weak.covariance))[weak.n_base :]
+    sd = np.sqrt(np.maximum(np.diag(weak.covariance), 0.0))[weak.n_base :]
     known = zip(candidate.effect.parameters, weak.x[weak.n_base :], sd, strict=True)
     parameters = tuple(
-        replace(p, prior=(p.decode(float(x)), float(own))) for p, x, own in known
+        replace(p, prior=(p.decode(_within(p, float(x))), float(own)))
+        if own > 0.0
+        else p
+        for p, x, own in known
     )
     return replace(candidate, effect=replace(candidate.effect, parameters=parameters))
+
+
+def _within(parameter: Parameter, x: float) -> float:
+    """Return a coordinate within its bounds."""
+    low, high = parameter.bounds
+    return min(max(x, low), high)

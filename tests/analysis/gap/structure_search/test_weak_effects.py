@@ -32,6 +32,7 @@ from jointbench.analysis.gap.structure_search.structure_acceptance import (
 from jointbench.analysis.gap.structure_search.structure_fits import settled
 from jointbench.analysis.gap.structure_search.weak_effects import (
     beyond_noise,
+    completed,
     supported_fits,
     weak_effects,
     weighed_by_bodies,
@@ -196,6 +197,29 @@ def test_all_close_pairs_have_a_coupling_where_it_is_asked_for(
         if not name.startswith(("frequency", "coupling")):
             at = uncertain.layout.at(name)
             assert moved[more.layout.at(name)] == x[at]
+
+
+def test_a_linear_fit_is_completed_in_one_step() -> None:
+    """Its cost is that of the minimum, its effect where that is."""
+    rng = np.random.default_rng(516)
+    slopes, centre = rng.normal(size=(40, 5)), np.zeros(5)
+    prior = np.array([1.0, 2.0, 1.0, 0.0, 0.0])
+    values = rng.normal(size=40)
+    system = slopes.T @ slopes + np.diag(prior)
+    least = np.linalg.solve(system, slopes.T @ values)
+    x = least + 0.1 * rng.normal(size=5)
+
+    def cost(at: FloatArray) -> float:
+        left = slopes @ at - values
+        return float(left @ left + prior @ at**2)
+
+    left = slopes @ x - values
+    fit = Fit(x, 3, (), left, slopes, cost(x), prior, centre)
+    ended = completed(fit)
+    np.testing.assert_allclose(ended.x[3:], least[3:])
+    np.testing.assert_allclose(ended.x[:3], x[:3])
+    np.testing.assert_allclose(ended.cost, cost(least))
+    np.testing.assert_allclose(ended.residual, slopes @ least - values)
 
 
 def test_the_hardest_hits_of_each_point(uncertain: StructureBench) -> None:
