@@ -160,7 +160,7 @@ class _Base:
         return StructureOutcome(outcome, done[0].bench, self.whole, self.before)
 
     def doubtful(self, best: JudgedFit, screening: Screening) -> StructureOutcome:
-        """Return the outcome that an effect explains the hits in one way alone.
+        """Return the outcome that an effect fits the hits where it should not.
 
         Args:
             best: fit that tests of weak effects do not support.
@@ -168,9 +168,7 @@ class _Base:
         """
         none = self.complete(screening)
         words = words_of(best.fit.candidates)
-        reason = (
-            f"{words} does, but leaves what no error of the modal table of a body is"
-        )
+        reason = f"{words} fits them only beside errors that no body's modal table has"
         refused = replace(self.first, passed=False, reason=reason, unexplained=True)
         return replace(none, outcome=replace(none.outcome, acceptance=refused))
 
