@@ -159,6 +159,30 @@ class _Base:
         outcome = _judged(self.complete(screening).outcome, done)
         return StructureOutcome(outcome, done[0].bench, self.whole, self.before)
 
+    def nothing(
+        self, screening: Screening, weak: WeakEffects | None
+    ) -> StructureOutcome:
+        """Return the outcome without an effect, refused where one is suspected.
+
+        Args:
+            screening: directed tests.
+            weak: tests of weak effects, where the base leaves little.
+        """
+        if weak is None or weak.suspected is None:
+            return self.complete(screening)
+        words = words_of((weak.suspected,))
+        return self._refused(
+            screening,
+            f"beside errors that a body's modal table has, {words} explains part of "
+            "what is left, and nothing all of it",
+        )
+
+    def _refused(self, screening: Screening, reason: str) -> StructureOutcome:
+        """Return the outcome that the base does not explain the hits after all."""
+        none = self.complete(screening)
+        refused = replace(self.first, passed=False, reason=reason, unexplained=True)
+        return replace(none, outcome=replace(none.outcome, acceptance=refused))
+
     def doubtful(self, best: JudgedFit, screening: Screening) -> StructureOutcome:
         """Return the outcome that an effect fits the hits where it should not.
 
@@ -166,11 +190,11 @@ class _Base:
             best: fit that tests of weak effects do not support.
             screening: directed tests that led to it.
         """
-        none = self.complete(screening)
         words = words_of(best.fit.candidates)
-        reason = f"{words} fits them only beside errors that no body's modal table has"
-        refused = replace(self.first, passed=False, reason=reason, unexplained=True)
-        return replace(none, outcome=replace(none.outcome, acceptance=refused))
+        return self._refused(
+            screening,
+            f"{words} fits them only beside errors that no body's modal table has",
+        )
 
     def weakly(self, weak: WeakEffects) -> StructureOutcome:
         """Return the outcome with weak effects, ranked by the costs of their tests."""
@@ -218,7 +242,7 @@ def _needed_from_base(
     tests = UNTESTED if weak is None else weak.tests
     needed = best_first([one for one in from_base if _needed(one, found.base)])
     if not needed:
-        return found.complete(tests)
+        return found.nothing(tests, weak)
     if not (supported := supported_fits(needed, weak)):
         return found.doubtful(needed[0], tests)
     return found.judged(first_with_slopes(supported), tests)
@@ -254,7 +278,7 @@ def _searched(
     if found.first.passed:
         done = [one for one in done if _needed(one, base)]
     if not done:
-        return found.complete(screening)
+        return found.nothing(screening, weak)
     if not (supported := supported_fits(done, weak)):
         return found.doubtful(done[0], screening)
     done = supported

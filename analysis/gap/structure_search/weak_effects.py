@@ -64,6 +64,8 @@ class WeakEffects:
             at rest, with the costs of the tests.
         complete: whether no effect counts, and the base leaves no more than errors of
             bodies do, or what it leaves resembles no effect at all.
+        suspected: effect that takes part of what the base leaves, none all of it; None
+            where no test shows more than errors of tables do.
     """
 
     few: StructureBench
@@ -73,6 +75,7 @@ class WeakEffects:
     tests: Screening
     fits: tuple[JudgedFit, ...] = ()
     complete: bool = False
+    suspected: Candidate | None = None
 
     def supports(self, fit: Fit) -> bool:
         """Return whether an effect takes a good part of what the base leaves here.
@@ -118,8 +121,14 @@ def weak_effects(
     found = WeakEffects(few, near.x, beyond_noise(own, ended), ended.cost, tests)
     near, best = _explaining(own, near, tests, progress)
     if not best:
-        unlike = tests.largest < WEAK.resemblance * found.cost
-        return replace(found, complete=unlike or found.left < WEAK.left)
+        share = tests.largest / found.cost
+        much = found.left > WEAK.left
+        leader = next(iter(tests.leaders(1)), None)
+        return replace(
+            found,
+            complete=share < WEAK.resemblance or not much,
+            suspected=leader if much and share > WEAK.suspicion else None,
+        )
     del own
     done = [_in_all_records(whole, base, one, progress) for one in best]
     accepted = best_first([one for one in done if one.acceptance.passed])

@@ -169,6 +169,23 @@ def test_a_name_is_supported_where_it_takes_what_the_base_leaves(
     assert supported_fits([refused], None) == [refused]
 
 
+def test_an_effect_that_the_catalogue_lacks_is_suspected(drawn: StructureBench) -> None:
+    """A gain of 10 % without gains in it: something else takes part of what is left."""
+    larger = drawn.campaign.hits.response.copy()
+    larger[:, 1] *= 1.1
+    lacking = tuple(c for c in drawn.candidates if c.effect.name != "gain_error")
+    _, base = base_of(drawn)
+    whole = replace(with_responses(drawn, larger), candidates=lacking)
+    weak = weak_effects(whole, base, _silent)
+    assert weak is not None
+    assert not weak.complete
+    assert weak.fits or weak.suspected is not None
+    whole, base = base_of(drawn)
+    nothing = weak_effects(whole, base, _silent)
+    assert nothing is not None
+    assert nothing.suspected is None
+
+
 def test_errors_that_no_body_has_leave_more(drawn: StructureBench) -> None:
     """A tenth of the response of one channel, at random times, is no such error."""
     whole, base = base_of(drawn)
