@@ -28,7 +28,7 @@ class WeakEffectSettings:
         "of what is left",
         "drop of the cost by an effect, over what its fit leaves beyond noise or one, "
         "from which it is named beside an accepted base",
-        "37 complete benches: directed tests of at most 16; hidden effects 98 to 2800",
+        "37 complete benches: directed tests of at most 24; hidden effects 98 to 2800",
     )
     left: float = numerical(
         3.0,
