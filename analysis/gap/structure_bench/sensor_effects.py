@@ -28,6 +28,7 @@ from jointbench.analysis.gap.structure_response.joint_state import (
     CableResonance,
     JointState,
 )
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 def _amplify(
@@ -139,6 +140,7 @@ SENSOR_EFFECTS: tuple[StructureEffect, ...] = (
         "ISO 16063-21",
         each_channel,
         _amplify,
+        tolerance=STRUCTURE.least_gain,
     ),
     one_parameter(
         "polarity",
@@ -197,6 +199,7 @@ SENSOR_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         turned_channels,
         _turned(rigidly=False),
+        tolerance=STRUCTURE.least_cross_axis,
     ),
     StructureEffect(
         Effect(
@@ -210,6 +213,7 @@ SENSOR_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         turned_channels,
         _turned(rigidly=True),
+        tolerance=STRUCTURE.least_turn,
     ),
     StructureEffect(
         Effect(
@@ -221,6 +225,7 @@ SENSOR_EFFECTS: tuple[StructureEffect, ...] = (
         ),
         movable_channels,
         _move_sensor,
+        tolerance=STRUCTURE.least_move,
     ),
     StructureEffect(
         Effect(

@@ -37,6 +37,8 @@ class StructureEffect:
         alone: True if it changes the modes, so that no other effect is fitted beside
             it.
         by_torque: True if it acts differently at each torque of the bolts.
+        tolerance: size of its first coordinate within which a sensor is as sensors
+            are, so that the effect is not named where the modal table is uncertain.
     """
 
     effect: Effect
@@ -48,6 +50,7 @@ class StructureEffect:
     aimed: bool = False
     alone: bool = False
     by_torque: bool = False
+    tolerance: float = 0.0
 
 
 def far_starts(first: float, last: float) -> tuple[float, ...]:
@@ -75,6 +78,7 @@ def one_parameter(
     *,
     always: bool = False,
     by_torque: bool = False,
+    tolerance: float = 0.0,
 ) -> StructureEffect:
     """Return a linear effect of one parameter.
 
@@ -87,9 +91,17 @@ def one_parameter(
         change: adds it to a state.
         always: True if fits start from it whatever the directed tests find.
         by_torque: True if it acts differently at each torque of the bolts.
+        tolerance: as in its record.
     """
     effect = Effect(name, family, (parameter,), source)
-    return StructureEffect(effect, sites, change, always=always, by_torque=by_torque)
+    return StructureEffect(
+        effect,
+        sites,
+        change,
+        always=always,
+        by_torque=by_torque,
+        tolerance=tolerance,
+    )
 
 
 def structure_candidates(

@@ -10,7 +10,6 @@ inconspicuous, and what is left of the records shows how large errors of the tab
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.fits_from_base import (
     fits_from_base,
     tested_beside,
@@ -55,20 +54,15 @@ def of_table(bench: StructureBench, fit: Fit) -> float:
     return min(chi2_per_dof(bench, fit), 1.0)
 
 
-def within_tolerance(fit: Fit) -> bool:
+def within_tolerance(bench: StructureBench, fit: Fit) -> bool:
     """Return whether a fit has a sensor as sensors are: placed, turned and calibrated.
 
     Args:
+        bench: with its catalogue.
         fit: with effects.
     """
-    tolerances = {
-        "wrong_position": STRUCTURE.least_move,
-        "wrong_direction": STRUCTURE.least_turn,
-        "gain_error": STRUCTURE.least_gain,
-        "cross_axis": STRUCTURE.least_cross_axis,
-    }
+    tolerance = {e.effect.name: e.tolerance for e in bench.entries}
     return any(
-        abs(float(term.coordinates[0]))
-        < tolerances.get(term.candidate.effect.name, 0.0)
+        abs(float(term.coordinates[0])) < tolerance.get(term.candidate.effect.name, 0.0)
         for term in fit.terms
     )

@@ -343,7 +343,7 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         base: fit without effects.
     """
     if bench.uncertain:
-        if within_tolerance(fit):
+        if within_tolerance(bench, fit):
             return False
         least = STRUCTURE.uncertain_drop * of_table(bench, fit)
         return base.cost - fit.cost > least or takes_differences(bench, fit, base)

@@ -303,7 +303,7 @@ def _counts(own: StructureBench, near: Fit, fit: Fit) -> bool:
     """Return whether a fit takes enough, and leaves no more than errors of bodies."""
     left = beyond_noise(own, fit)
     least = WEAK.drop * max(left, 1.0)
-    enough = near.cost - fit.cost > least and not within_tolerance(fit)
+    enough = near.cost - fit.cost > least and not within_tolerance(own, fit)
     return enough and left < WEAK.left
 
 

@@ -80,6 +80,7 @@ def test_a_sensor_a_millimetre_off_is_within_tolerance(
         replace(base, candidates=(place,), x=np.append(x, [distance, 0.0]), cost=0.0)
         for distance in (-1e-3, 5e-3)
     )
-    assert within_tolerance(near) and not within_tolerance(off)
+    assert within_tolerance(uncertain, near)
+    assert not within_tolerance(uncertain, off)
     assert not takes(uncertain, near, base)
     assert takes(uncertain, off, base)
