@@ -133,13 +133,15 @@ _POSITION = (
     replace(_AZIMUTH, starts=(0.0, np.pi / 4, np.pi / 2, 3 * np.pi / 4)),
 )
 SENSOR_EFFECTS: tuple[StructureEffect, ...] = (
-    one_parameter(
-        "gain_error",
-        "sensor",
-        Parameter("gain", "-", lower=-0.6, upper=1.5, off=0.0),
-        "ISO 16063-21",
-        each_channel,
-        _amplify,
+    replace(
+        one_parameter(
+            "gain_error",
+            "sensor",
+            Parameter("gain", "-", lower=-0.6, upper=1.5, off=0.0),
+            "ISO 16063-21",
+            each_channel,
+            _amplify,
+        ),
         tolerance=STRUCTURE.least_gain,
     ),
     one_parameter(

@@ -78,7 +78,6 @@ def one_parameter(
     *,
     always: bool = False,
     by_torque: bool = False,
-    tolerance: float = 0.0,
 ) -> StructureEffect:
     """Return a linear effect of one parameter.
 
@@ -91,17 +90,9 @@ def one_parameter(
         change: adds it to a state.
         always: True if fits start from it whatever the directed tests find.
         by_torque: True if it acts differently at each torque of the bolts.
-        tolerance: as in its record.
     """
     effect = Effect(name, family, (parameter,), source)
-    return StructureEffect(
-        effect,
-        sites,
-        change,
-        always=always,
-        by_torque=by_torque,
-        tolerance=tolerance,
-    )
+    return StructureEffect(effect, sites, change, always=always, by_torque=by_torque)
 
 
 def structure_candidates(
