@@ -172,9 +172,9 @@ class StructureBench:
         return Noise(self.sigma, 0.0, no_scatter((), len(self.sigma)))
 
     def views(self, fit: Fit) -> tuple[View, ...]:
-        """Return the residual of a fit by view."""
+        """Return the residual of a fit by view, in the units of its chi2/dof."""
         hits = self.campaign.hits
-        residual = fit.residual.reshape(self.blocks.shape)
+        residual = np.sqrt(self.coherence) * fit.residual.reshape(self.blocks.shape)
         names = self.campaign.bodies.channels
         return slice_views(residual, self.blocks, names, hits.sample_rate)
 

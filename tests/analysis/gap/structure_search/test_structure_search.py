@@ -145,6 +145,8 @@ def test_the_gap_of_an_uncertain_table_is_in_units_of_its_floor(
     assert [e.name for e in found.effects] == ["gain_error"]
     assert found.gap_before.value > 1.0
     assert found.gap_after.value < 0.1 * found.gap_before.value
+    levels = next(v for v in found.gap_before.views if v.name == "level")
+    assert np.mean(list(levels.chi2_per_dof.values())) > 1.0
     assert found.acceptable_deviation == STANDARD.floor_prior_limit
 
 
