@@ -281,8 +281,7 @@ def _searched(
         return found.nothing(screening, weak)
     if not (supported := supported_fits(done, weak)):
         return found.doubtful(done[0], screening)
-    done = supported
-    done = first_with_slopes(done)
+    done = first_with_slopes(supported)
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
         far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2

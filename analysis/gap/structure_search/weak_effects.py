@@ -16,7 +16,6 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
-from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.candidate_starts import along
@@ -87,8 +86,10 @@ class WeakEffects:
         Args:
             fit: of effects to all records.
         """
+        if self.left < WEAK.left:
+            return True
         own = weighed_by_bodies(self.few, self.x)
-        if own is None or self.left < WEAK.left:
+        if own is None:
             return True
         problem = make_problem(own, fit.candidates)
         start = np.concatenate([self.x, fit.x[fit.n_base :]])
@@ -286,8 +287,7 @@ def _once_more(
     """
     best, window = fits[0], WINDOW.window
     landing, _ = own.landed(best.base, best.terms, window)
-    floor = own.table_floor
-    about = own.at(best.base, best.terms, landing, floor, window)
+    about = own.at(best.base, best.terms, landing, own.table_floor, window)
     moved = weighed_by_bodies(about, best.base, best.terms)
     if moved is None:
         return own, near, list(fits)
@@ -296,7 +296,7 @@ def _once_more(
         minimise(make_problem(moved, one.candidates), one.x, WINDOW, iterations=steps)
         for one in (near, *fits)
     ]
-    return moved, again[0], sorted(again[1:], key=lambda one: score(moved, one))
+    return moved, again[0], again[1:]
 
 
 def _counts(own: StructureBench, near: Fit, fit: Fit) -> bool:
@@ -333,15 +333,9 @@ def _as_found(weak: Fit) -> Candidate:
     sd = np.sqrt(np.maximum(np.diag(weak.covariance), 0.0))[weak.n_base :]
     known = zip(candidate.effect.parameters, weak.x[weak.n_base :], sd, strict=True)
     parameters = tuple(
-        replace(p, prior=(p.decode(_within(p, float(x))), float(own)))
+        replace(p, prior=(p.decode(float(np.clip(x, *p.bounds))), float(own)))
         if own > 0.0
         else p
         for p, x, own in known
     )
     return replace(candidate, effect=replace(candidate.effect, parameters=parameters))
-
-
-def _within(parameter: Parameter, x: float) -> float:
-    """Return a coordinate within its bounds."""
-    low, high = parameter.bounds
-    return min(max(x, low), high)

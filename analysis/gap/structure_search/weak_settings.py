@@ -28,7 +28,8 @@ class WeakEffectSettings:
         "of what is left",
         "drop of the cost by an effect, over what its fit leaves beyond noise or one, "
         "from which it is named beside an accepted base",
-        "37 complete benches: directed tests of at most 24; hidden effects 98 to 2800",
+        "37 complete benches: directed tests of at most 16, or 24 with the last step "
+        "of the base (504700); fits of hidden effects 90 to 2860",
     )
     left: float = numerical(
         3.0,
@@ -36,7 +37,7 @@ class WeakEffectSettings:
         "what a fit may leave beyond noise, with that floor, over as many numbers as "
         "records have",
         "34 of 37 complete benches leave 0.3 to 2.8, with weak effects fitted 0.3 to "
-        "1.7; a table wrong by 2 % at each place leaves 4 to 42",
+        "2.0; a table wrong by 2 % at each place leaves 4 to 42",
     )
     resemblance: float = numerical(
         0.01,
@@ -50,7 +51,7 @@ class WeakEffectSettings:
         "of the cost",
         "largest of these tests from which a base that explains the hits, and leaves "
         "more than errors of bodies, is no verdict where no effect explains it",
-        "37 complete benches: at most 6 %; tables wrong at each place 1 to 4 %; a gain "
+        "37 complete benches: at most 6 % (before the last step of the base); a gain "
         "of 5 % taken out of the catalogue (543002) 34 %",
     )
     part: float = numerical(
@@ -58,7 +59,8 @@ class WeakEffectSettings:
         "of what the base leaves",
         "cost of a fit below which errors of bodies are those about it, and what an "
         "effect named by other tests may leave here",
-        "a wrong name left more than this of 19 (703001), true effects 3 to 12 %",
+        "a wrong name left more than this of 19 (703001), fits of true effects beside "
+        "bases that leave more than 3 had 3 to 21 %",
     )
     rival: float = numerical(
         0.5,
