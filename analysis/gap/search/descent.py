@@ -102,6 +102,8 @@ class Descent:
             not converge to a fraction of a unit of chi2.
         dof: degrees of freedom beyond which chi2 is excess; none for those of the
             samples, which are more where their errors are coherent.
+        sparing: try no step that is hardly shorter than one that failed, and correct
+            none further whose correction raised the cost.
     """
 
     resolution: Resolution = FULL
@@ -111,6 +113,7 @@ class Descent:
     exact_slopes: bool = True
     least_drop: float = 0.0
     dof: float | None = None
+    sparing: bool = False
 
     def slopes(self, problem: FitProblem, x: FloatArray, r: FloatArray) -> FloatArray:
         """Return the Jacobian at x, where the residual is r, shape (n_rows, n)."""
@@ -177,7 +180,7 @@ def descend(
             + SEARCH.absolute_tolerance,
         )
         near = _Neighbourhood(problem, x, r, j, cost, SEARCH.promised_share * ended)
-        moved, damping = _step(near, damping, how.resolution)
+        moved, damping = _step(near, damping, how)
         if moved is None:
             if age == 0:
                 break
@@ -295,7 +298,7 @@ _Moved = tuple[FloatArray, FloatArray, float]
 
 
 def _step(
-    near: _Neighbourhood, damping: float, resolution: Resolution
+    near: _Neighbourhood, damping: float, how: Descent
 ) -> tuple[_Moved | None, float]:
     """Try successively shorter steps until one lowers the cost.
 
@@ -313,23 +316,29 @@ def _step(
     size = np.sqrt(np.maximum(np.diag(near.hessian), 1e-12))
     h = (near.hessian / np.outer(size, size))[np.ix_(free, free)]
     g = (gradient / size)[free]
+    failed = np.inf
     for _ in range(9):
         step = np.zeros(x.size)
         step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
         if near.predicted_drop(x + step / size) < near.least:
             break
-        trial = _moved(problem, x, step / size)
-        try_r, try_cost = _looked_at(problem, trial, resolution)
-        for _ in range(SEARCH.corrections):
-            if try_cost < cost or not np.isfinite(try_cost):
-                break
-            gradient = near.gradient_with(trial, try_r)
-            stiff = h + SEARCH.stiff_damping * np.eye(h.shape[0])
-            step[free] = -_solve(stiff, (gradient / size)[free])
-            trial = _moved(problem, trial, step / size)
-            try_r, try_cost = _looked_at(problem, trial, resolution)
-        if np.isfinite(try_cost) and try_cost < cost:
-            return (trial, try_r, try_cost), max(damping / 10, SEARCH.least_damping)
+        length = float(np.linalg.norm(step))
+        if not how.sparing or length < SEARCH.shorter_step * failed:
+            trial = _moved(problem, x, step / size)
+            try_r, try_cost = _looked_at(problem, trial, how.resolution)
+            for _ in range(SEARCH.corrections):
+                if try_cost < cost or not np.isfinite(try_cost):
+                    break
+                gradient, before = near.gradient_with(trial, try_r), try_cost
+                stiff = h + SEARCH.stiff_damping * np.eye(h.shape[0])
+                step[free] = -_solve(stiff, (gradient / size)[free])
+                trial = _moved(problem, trial, step / size)
+                try_r, try_cost = _looked_at(problem, trial, how.resolution)
+                if how.sparing and try_cost > before:
+                    break
+            if np.isfinite(try_cost) and try_cost < cost:
+                return (trial, try_r, try_cost), max(damping / 10, SEARCH.least_damping)
+            failed = length
         damping = max(damping * 8, 1e-6)
         if damping > 1e7:
             break

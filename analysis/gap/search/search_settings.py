@@ -73,6 +73,13 @@ class SearchSettings:
         "damping under which only well determined parameters move",
         "development campaigns",
     )
+    shorter_step: float = numerical(
+        0.7,
+        "of the length",
+        "length of a step, relative to one that failed, above which it is not tried in "
+        "a sparing descent",
+        "bases of bolted bodies met the same cost at five dampings in a row",
+    )
     secant_steps: int = numerical(
         2,
         "steps",

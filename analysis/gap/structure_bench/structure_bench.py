@@ -373,6 +373,10 @@ class StructureBench:
         """
         return replace(self, kept=frames_of(self.kept))
 
+    def bare(self) -> "StructureBench":
+        """Return the bench at rest, without what it was expanded by."""
+        return replace(self.at_rest(), directions=None, errors=None, bodies=None)
+
     def chosen(self, records: IntArray) -> "StructureBench":
         """Return the bench of some of its records."""
         hits = self.campaign.hits
@@ -433,10 +437,11 @@ class StructureBench:
         state = ((t.candidate, t.coordinates.tobytes()) for t in terms)
         key = (fine, base.tobytes(), *state)
         place = ("model", window_count(self.campaign.hits, window))
-        last = self.kept.get(place)
-        if last is not None and last[0] == key:
-            kept: HitModel = last[1]
+        if place in self.kept and self.kept[place][0] == key:
+            kept: HitModel = self.kept[place][1]
             return kept
+        # The last one goes before the next one comes: two take a gigabyte.
+        self.kept.pop(place, None)
         found = hit_model(
             self.campaign,
             self.state(base, terms),

@@ -69,8 +69,9 @@ def fits_from_base(
         if test.drop < least:
             break
         progress(f"{words_of((candidate,))} from the base")
-        done.append(_fit_from_base(whole, few, base, test))
-    return best_first(done)
+        # Slopes of a law stay, and are the largest array there is.
+        done = best_first([*done, _fit_from_base(whole, few, base, test)])
+    return done
 
 
 def _fit_from_base(

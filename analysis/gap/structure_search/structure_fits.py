@@ -151,6 +151,7 @@ def _settled_in(
             exact_slopes=False,
             least_drop=_least_drop(few, candidates, window),
             dof=_dof(few, window),
+            sparing=few.uncertain,
         )
         fit = _stated(few, descend(problem, x, how, given))
         x = fit.x
@@ -227,13 +228,12 @@ def settled(
     bench = _met(bench, start, candidates, near=near)
     fit = _whole(bench, start, candidates)
     for _ in range(STRUCTURE.settling_rounds):
-        landing = bench.landing
+        landing, before = bench.landing, fit.cost
+        fit, given = _left_to_next(bench, fit)
         near = near_records(bench, fit)
         if near:
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        before = fit.cost
-        fit, given = _left_to_next(bench, fit)
         fit = _whole(bench, fit.x, candidates, given, exact=near and given is None)
         least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
         if before - fit.cost < least * fit.cost:
@@ -301,6 +301,7 @@ def _whole(
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
         dof=_dof(bench, FULL),
+        sparing=bench.uncertain,
     )
     problem = _weighed(bench, candidates, FULL)
     return _stated(bench, descend(problem, start, how, known))

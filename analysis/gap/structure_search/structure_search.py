@@ -15,6 +15,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.basics.steady_memory import return_freed_memory
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.amplitudes import (
     amplitude_sizes,
@@ -80,6 +81,7 @@ from jointbench.analysis.gap.structure_search.whole_records import (
     first_with_slopes,
     in_whole_records,
     leaves_much,
+    with_slopes,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)
@@ -111,6 +113,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         bench: as made, at the coarse floor.
         progress: receives one line for each step.
     """
+    progress = _tidied(progress)
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
     few, start = retuned(few, _base_in_windows(few), ())
@@ -128,8 +131,17 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     from_base = _from_base(found, progress)
     if found.first.passed and not one_effect_takes_much(found.whole, found.base):
         return _needed_from_base(found, from_base, weak)
-    found = replace(found, whole=found.whole.at_rest())
     return _searched(found, bench, few, start, from_base, weak, progress)
+
+
+def _tidied(progress: Progress) -> Progress:
+    """Return a receiver before whose lines memory of the last step is given back."""
+
+    def receive(line: str) -> None:
+        return_freed_memory()
+        progress(line)
+
+    return receive
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -216,7 +228,7 @@ class _Base:
 def _judged_base(whole: StructureBench, base: Fit) -> _Base:
     """Return the base with its acceptance."""
     first, before = accept_structure(whole, base, base), fit_summary(whole, base)
-    return _Base(whole, without_slopes(base), first, before)
+    return _Base(whole.at_rest(), without_slopes(base), first, before)
 
 
 def _weak(found: _Base, progress: Progress) -> WeakEffects | None:
@@ -245,7 +257,7 @@ def _needed_from_base(
         return found.nothing(tests, weak)
     if not (supported := supported_fits(needed, weak)):
         return found.doubtful(needed[0], tests)
-    return found.judged(first_with_slopes(supported), tests)
+    return found.judged(supported, tests)
 
 
 def _searched(
@@ -281,7 +293,7 @@ def _searched(
         return found.nothing(screening, weak)
     if not (supported := supported_fits(done, weak)):
         return found.doubtful(done[0], screening)
-    done = first_with_slopes(supported)
+    done = supported
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
         far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2
@@ -365,7 +377,7 @@ def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None
         base: fit without effects.
         pair: fit of two effects.
     """
-    sizes = amplitude_sizes(pair.fit)
+    sizes = amplitude_sizes(with_slopes(pair.bench, pair.fit))
     if not pair.acceptance.passed or min(sizes) >= STRUCTURE.plain_amplitude:
         return None
     kept = pair.fit.terms[int(np.argmax(sizes))]
@@ -404,7 +416,12 @@ def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:
 def _both_matter(judged: JudgedFit) -> bool:
     """Return whether each effect of a pair is clearly on."""
     limit = judged.bench.policy.amplitude_limit
-    return weakest_amplitude(judged.fit) >= limit
+    return _weakest(judged) >= limit
+
+
+def _weakest(judged: JudgedFit) -> float:
+    """Return the smallest distance of an amplitude of a fit from OFF, in sd."""
+    return weakest_amplitude(with_slopes(judged.bench, judged.fit))
 
 
 def _complete(
@@ -440,7 +457,7 @@ def needless(
         ended: cost of the base where it had ended.
         far_off: whether the base was.
     """
-    amplitude, uncertain = weakest_amplitude(best.fit), best.bench.uncertain
+    amplitude, uncertain = _weakest(best), best.bench.uncertain
     if amplitude >= STRUCTURE.plain_amplitude and (far_off or not uncertain):
         return None
     bare = make_problem(best.bench, ())
@@ -479,15 +496,16 @@ def _base_in_whole_records(
     few = replace(few, reach=bench.reach, floor=few.table_floor)
     few, fit = approached(few, start, ())
     few, fit = from_other_frequencies(few, fit) or (few, fit)
-    fit = without_slopes(fit)
     chi2 = chi2_per_dof(few, fit)
-    explains = chi2 < few.policy.floor_chi2
+    explains, x = chi2 < few.policy.floor_chi2, fit.x
     layout = with_errors_found(bench.layout, fit, explains=explains)
+    # What one record of each condition takes is needed for all of them.
+    del few, fit
     bench = replace(bench, layout=layout)
     if chi2 < STRUCTURE.explaining_chi2:
-        return settled(bench, fit.x, (), near=True)
-    whole = bench.at(fit.x, (), bench.landing, bench.table_floor)
-    return whole, minimise(make_problem(whole, ()), fit.x, FULL, iterations=0)
+        return settled(bench, x, (), near=True)
+    whole = bench.at(x, (), bench.landing, bench.table_floor)
+    return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
 
 
 def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
@@ -495,16 +513,17 @@ def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
     fits.sort(key=lambda f: score(best.bench, f))
-    level: tuple[Fit, ...] = (best.fit,)
+    level = [best.fit]
     if best.acceptance.passed:
-        level = tuple(_alike_by_size(best, rivals(best.bench, fits)))
+        level = _alike_by_size(best, rivals(best.bench, fits))
+    shown = with_slopes(best.bench, best.fit)
     return replace(
         none,
         bench=best.bench,
-        best=best.fit,
+        best=shown,
         acceptance=best.acceptance,
-        ranked=tuple(fits),
-        level=level,
+        ranked=tuple(shown if f is best.fit else f for f in fits),
+        level=tuple(shown if f is best.fit else f for f in level),
     )
 
 

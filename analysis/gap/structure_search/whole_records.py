@@ -55,7 +55,7 @@ def in_whole_records(
     """Fit the best candidates to whole records, accepted ones first.
 
     One record of each condition decides which of them are fitted to all, unless they
-    are already.
+    are already. Fits are at rest.
 
     Args:
         bench: all records.
@@ -97,7 +97,7 @@ def in_whole_records(
         done.append(JudgedFit(whole.at_rest(), found, acceptance))
         del whole, found
         done = best_first(done)
-    return first_with_slopes(best_first([*done, *judged]))
+    return [at_rest(one) for one in best_first([*done, *judged])]
 
 
 def _from_other_frequencies(near: Sequence[_Found], progress: Progress) -> list[_Found]:
@@ -132,6 +132,8 @@ def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
 def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
     """Return fits, accepted ones first; the slopes of all but the first go.
 
+    Of a bench on which a refused one was found, nothing more is asked.
+
     Args:
         done: fits, one of them for each explanation or more; the best one counts.
     """
@@ -139,7 +141,13 @@ def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
     best = {labels_of(one.fit.candidates): one for one in reversed(ranked)}
     ranked = [one for one in ranked if best[labels_of(one.fit.candidates)] is one]
     rest = [replace(one, fit=without_slopes(one.fit)) for one in ranked[1:]]
-    return ranked[:1] + rest
+    return [
+        *ranked[:1],
+        *(
+            one if one.acceptance.passed else replace(one, bench=one.bench.bare())
+            for one in rest
+        ),
+    ]
 
 
 def at_rest(one: JudgedFit) -> JudgedFit:
