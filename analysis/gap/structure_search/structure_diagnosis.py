@@ -38,10 +38,8 @@ from jointbench.analysis.gap.structure_response.hit_campaign import (
     RejectedHit,
 )
 from jointbench.analysis.gap.structure_search.fit_summary import fit_summary
-from jointbench.analysis.gap.structure_search.structure_search import (
-    StructureOutcome,
-    search_structure,
-)
+from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
+from jointbench.analysis.gap.structure_search.structure_search import search_structure
 from jointbench.analysis.gap.structure_search.whole_records import with_slopes
 
 OTHER_POINTS = (

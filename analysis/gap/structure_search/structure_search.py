@@ -9,38 +9,37 @@ landed. Where no single effect explains the hits, a second one is sought beside 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.basics.steady_memory import return_freed_memory
-from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.amplitudes import (
     amplitude_sizes,
     weakest_amplitude,
 )
-from jointbench.analysis.gap.judgement.naming import Acceptance
-from jointbench.analysis.gap.judgement.rivals import rival_within, rivals
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
-from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
-from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.base_fits import (
+    base_in_whole_records,
+    base_in_windows,
+)
 from jointbench.analysis.gap.structure_search.differences_from_base import (
     differences_from_base,
     differs,
     takes_differences,
 )
-from jointbench.analysis.gap.structure_search.fit_summary import (
-    FitSummary,
-    fit_summary,
-)
+from jointbench.analysis.gap.structure_search.fit_summary import fit_summary
+from jointbench.analysis.gap.structure_search.found_base import FoundBase, judged_base
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
@@ -57,18 +56,16 @@ from jointbench.analysis.gap.structure_search.short_windows import (
     carried,
     tested,
 )
-from jointbench.analysis.gap.structure_search.sought_frequencies import (
-    from_other_frequencies,
-)
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import (
-    approached,
     chi2_per_dof,
-    fitted_finely,
     settled,
-    with_errors_found,
+)
+from jointbench.analysis.gap.structure_search.structure_outcome import (
+    StructureOutcome,
+    without_effects,
 )
 from jointbench.analysis.gap.structure_search.weak_effects import (
     WeakEffects,
@@ -78,7 +75,6 @@ from jointbench.analysis.gap.structure_search.weak_effects import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     best_first,
-    first_with_slopes,
     in_whole_records,
     leaves_much,
     with_slopes,
@@ -86,23 +82,6 @@ from jointbench.analysis.gap.structure_search.whole_records import (
 
 UNTESTED = Screening((), 0.0, 0.0)
 """No directed tests: a base that explains the hits needs none."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class StructureOutcome:
-    """Outcome of a search on bolted bodies.
-
-    Attributes:
-        outcome: base, best fit and its rivals.
-        bench: on which the best fit was found.
-        base_bench: on which the base was found.
-        before: gap and parameters of the base.
-    """
-
-    outcome: SearchOutcome
-    bench: StructureBench
-    base_bench: StructureBench
-    before: FitSummary
 
 
 @one_thread()
@@ -116,10 +95,10 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     progress = _tidied(progress)
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
-    few, start = retuned(few, _base_in_windows(few), ())
+    few, start = retuned(few, base_in_windows(few), ())
     progress("base in whole records")
     bench = replace(bench, reach=STRUCTURE.final_reach, layout=few.layout)
-    found = _judged_base(*_base_in_whole_records(bench, few, start))
+    found = judged_base(*base_in_whole_records(bench, few, start))
     few = few.at(start, (), few.landing, few.table_floor)
     bench, few = (replace(one, layout=found.whole.layout) for one in (bench, few))
     weak = _weak(found, progress)
@@ -144,101 +123,14 @@ def _tidied(progress: Progress) -> Progress:
     return receive
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Base:
-    """The fit without effects.
-
-    Attributes:
-        whole: all records, on which it was found.
-        base: fit, without its slopes, which take a gigabyte.
-        first: its acceptance.
-        before: its gap and parameters.
-    """
-
-    whole: StructureBench
-    base: Fit
-    first: Acceptance
-    before: FitSummary
-
-    def complete(self, screening: Screening) -> StructureOutcome:
-        """Return the outcome that nothing is missing, or that nothing was found."""
-        return _complete(self.whole, self.base, self.first, screening, self.before)
-
-    def judged(
-        self, done: Sequence[JudgedFit], screening: Screening
-    ) -> StructureOutcome:
-        """Return the outcome with fits of effects, best first."""
-        outcome = _judged(self.complete(screening).outcome, done)
-        return StructureOutcome(outcome, done[0].bench, self.whole, self.before)
-
-    def nothing(
-        self, screening: Screening, weak: WeakEffects | None
-    ) -> StructureOutcome:
-        """Return the outcome without an effect, refused where one is suspected.
-
-        Args:
-            screening: directed tests.
-            weak: tests of weak effects, where the base leaves little.
-        """
-        if weak is None or weak.suspected is None:
-            return self.complete(screening)
-        words = words_of((weak.suspected,))
-        return self._refused(
-            screening,
-            f"beside errors that a body's modal table has, {words} explains part of "
-            "what is left, and nothing all of it",
-        )
-
-    def _refused(self, screening: Screening, reason: str) -> StructureOutcome:
-        """Return the outcome that the base does not explain the hits after all."""
-        none = self.complete(screening)
-        refused = replace(self.first, passed=False, reason=reason, unexplained=True)
-        return replace(none, outcome=replace(none.outcome, acceptance=refused))
-
-    def doubtful(self, best: JudgedFit, screening: Screening) -> StructureOutcome:
-        """Return the outcome that an effect fits the hits where it should not.
-
-        Args:
-            best: fit that tests of weak effects do not support.
-            screening: directed tests that led to it.
-        """
-        words = words_of(best.fit.candidates)
-        return self._refused(
-            screening,
-            f"{words} fits them only beside errors that no body's modal table has",
-        )
-
-    def weakly(self, weak: WeakEffects) -> StructureOutcome:
-        """Return the outcome with weak effects, ranked by the costs of their tests."""
-        best, *_ = first_with_slopes(weak.fits)
-        fits = (best.fit, *(one.fit for one in weak.fits[1:]))
-        none = self.complete(weak.tests).outcome
-        outcome = replace(
-            none,
-            bench=best.bench,
-            base=replace(self.base, cost=weak.cost),
-            best=best.fit,
-            acceptance=best.acceptance,
-            ranked=fits,
-            level=fits,
-        )
-        return StructureOutcome(outcome, best.bench, self.whole, self.before)
-
-
-def _judged_base(whole: StructureBench, base: Fit) -> _Base:
-    """Return the base with its acceptance."""
-    first, before = accept_structure(whole, base, base), fit_summary(whole, base)
-    return _Base(whole.at_rest(), without_slopes(base), first, before)
-
-
-def _weak(found: _Base, progress: Progress) -> WeakEffects | None:
+def _weak(found: FoundBase, progress: Progress) -> WeakEffects | None:
     """Test effects that a table wrong as bodies are does not hide, where it is one."""
     if not found.whole.uncertain or found.first.excess > found.first.allowed:
         return None
     return weak_effects(found.whole, found.base, progress)
 
 
-def _from_base(found: _Base, progress: Progress) -> list[JudgedFit]:
+def _from_base(found: FoundBase, progress: Progress) -> list[JudgedFit]:
     """Return fits of what no modal table imitates, from a base that explains."""
     whole, base, first = found.whole, found.base, found.first
     if not whole.uncertain or first.excess > first.allowed:
@@ -248,7 +140,7 @@ def _from_base(found: _Base, progress: Progress) -> list[JudgedFit]:
 
 
 def _needed_from_base(
-    found: _Base, from_base: Sequence[JudgedFit], weak: WeakEffects | None
+    found: FoundBase, from_base: Sequence[JudgedFit], weak: WeakEffects | None
 ) -> StructureOutcome:
     """Return the outcome beside an accepted base, with what it needs."""
     tests = UNTESTED if weak is None else weak.tests
@@ -261,7 +153,7 @@ def _needed_from_base(
 
 
 def _searched(
-    found: _Base,
+    found: FoundBase,
     bench: StructureBench,
     few: StructureBench,
     start: FloatArray,
@@ -424,18 +316,6 @@ def _weakest(judged: JudgedFit) -> float:
     return weakest_amplitude(with_slopes(judged.bench, judged.fit))
 
 
-def _complete(
-    bench: StructureBench,
-    base: Fit,
-    judged: Acceptance,
-    screening: Screening,
-    before: FitSummary,
-) -> StructureOutcome:
-    """Return the outcome that nothing is missing, or that nothing was found."""
-    none = SearchOutcome(bench, base, judged, screening, base, judged, (), (base,))
-    return StructureOutcome(none, bench, bench, before)
-
-
 def needless(
     best: JudgedFit,
     screening: Screening,
@@ -471,80 +351,4 @@ def needless(
     nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
     if not (judged.passed or nothing):
         return None
-    return _complete(bench, base, judged, screening, fit_summary(bench, base))
-
-
-def _base_in_windows(few: StructureBench) -> FloatArray:
-    """Fit the base from its nominal values, coarse to fine."""
-    x = np.zeros(few.base_sd.size)
-    for window in STRUCTURE.base_windows:
-        floor = max(STRUCTURE.coarse_floor, few.table_floor)
-        few = few.at(x, (), few.landing, floor)
-        problem = make_problem(few, ())
-        x = minimise(problem, x, Resolution(window), iterations=8, exact_slopes=False).x
-    return x
-
-
-def _base_in_whole_records(
-    bench: StructureBench, few: StructureBench, start: FloatArray
-) -> tuple[StructureBench, Fit]:
-    """Fit the base to whole records: to all of them, unless it is far off.
-
-    A base far off is fitted to one record of each condition, and its chi2 is that of
-    all records.
-    """
-    few = replace(few, reach=bench.reach, floor=few.table_floor)
-    few, fit = approached(few, start, ())
-    few, fit = from_other_frequencies(few, fit) or (few, fit)
-    chi2 = chi2_per_dof(few, fit)
-    explains, x = chi2 < few.policy.floor_chi2, fit.x
-    layout = with_errors_found(bench.layout, fit, explains=explains)
-    # What one record of each condition takes is needed for all of them.
-    del few, fit
-    bench = replace(bench, layout=layout)
-    if chi2 < STRUCTURE.explaining_chi2:
-        return settled(bench, x, (), near=True)
-    whole = bench.at(x, (), bench.landing, bench.table_floor)
-    return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
-
-
-def _judged(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
-    """Compare the best fit with its rivals under one whitening."""
-    best = done[0]
-    fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
-    fits.sort(key=lambda f: score(best.bench, f))
-    level = [best.fit]
-    if best.acceptance.passed:
-        level = _alike_by_size(best, rivals(best.bench, fits))
-    shown = with_slopes(best.bench, best.fit)
-    return replace(
-        none,
-        bench=best.bench,
-        best=shown,
-        acceptance=best.acceptance,
-        ranked=tuple(shown if f is best.fit else f for f in fits),
-        level=tuple(shown if f is best.fit else f for f in level),
-    )
-
-
-def _alike_by_size(best: JudgedFit, level: Sequence[Fit]) -> list[Fit]:
-    """Return rivals, those at the same channel in units of what is left there."""
-    first, bench = level[0], best.bench
-    limit = rival_within(first, bench.policy) * of_table(bench, first)
-    return [
-        one
-        for one in level
-        if {c.site for c in one.candidates} != {c.site for c in first.candidates}
-        or score(bench, one) - score(bench, first) < limit
-    ]
-
-
-def _alike(best: JudgedFit, fit: Fit) -> Fit:
-    """Return a rival under the whitening of the best fit, with the slopes of a law."""
-    if best.bench.nonlinear(fit.candidates):
-        return fitted_finely(best.bench, fit.x, fit.candidates, 3)
-    problem = make_problem(best.bench, fit.candidates)
-    # Frequencies that a table leaves open are those of the closed modes of the best.
-    steps = STRUCTURE.whole_iterations if best.bench.uncertain else 3
-    found = minimise(problem, fit.x, FULL, iterations=steps, exact_slopes=False)
-    return without_slopes(found)
+    return without_effects(bench, base, judged, screening, fit_summary(bench, base))

@@ -13,10 +13,8 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
-from jointbench.analysis.gap.structure_search.structure_search import (
-    StructureOutcome,
-    search_structure,
-)
+from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
+from jointbench.analysis.gap.structure_search.structure_search import search_structure
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 

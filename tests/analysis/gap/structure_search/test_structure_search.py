@@ -49,9 +49,9 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     settled,
     with_errors_found,
 )
+from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
-    StructureOutcome,
     affordable,
     alone,
     needless,
