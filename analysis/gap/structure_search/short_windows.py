@@ -2,6 +2,7 @@
 """Fits of one more effect in the first milliseconds, where records show it in phase."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,9 +52,10 @@ def carried(
     """
     fits: list[Fit] = []
     rival: float | None = None
-    for candidate in _chosen(few, near, screening):
+    bases = _bases(few, near)
+    for candidate in _chosen(few, near, screening, bases):
         progress(f"{words_of((*near.candidates, candidate))} in a short window")
-        starts = _starts(few, near, screening, candidate)
+        starts = _starts(few, near, screening, candidate, bases)
         found = [
             minimise(
                 s.problem,
@@ -89,7 +91,32 @@ def carried(
     return sorted(longer, key=lambda f: score(few, f))
 
 
-def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candidate]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _StartingBase:
+    """A base from which far starts go.
+
+    Attributes:
+        x: its coordinates, then those of effects fitted already, shape (n,).
+        bench: with the joints closed there once.
+    """
+
+    x: FloatArray
+    bench: StructureBench
+
+
+def _bases(few: StructureBench, near: Fit) -> list[_StartingBase]:
+    """Return the nominal base and the fitted one."""
+    nominal = np.concatenate([np.zeros_like(near.base), near.x[near.n_base :]])
+    fits = (replace(near, x=nominal), near)
+    return [_StartingBase(one.x, few.for_tests(one, SHORT)) for one in fits]
+
+
+def _chosen(
+    few: StructureBench,
+    near: Fit,
+    screening: Screening,
+    bases: Sequence[_StartingBase],
+) -> list[Candidate]:
     """Return the leaders of the directed tests, and those that are always tried.
 
     An effect leads at a few sites at most, else one that follows any residual would
@@ -112,11 +139,15 @@ def _chosen(few: StructureBench, near: Fit, screening: Screening) -> list[Candid
         if c not in leaders and c not in chosen
     ]
     known = leaders + place + chosen
-    return known + _strong(few, near, [c for c in free if c not in known])
+    others = [c for c in free if c not in known]
+    return known + _strong(few, near, others, bases)
 
 
 def _strong(
-    few: StructureBench, near: Fit, others: Sequence[Candidate]
+    few: StructureBench,
+    near: Fit,
+    others: Sequence[Candidate],
+    bases: Sequence[_StartingBase],
 ) -> list[Candidate]:
     """Return candidates that are nearer to the records when strong than the fit is.
 
@@ -129,7 +160,7 @@ def _strong(
     for c in others:
         if few.nonlinear((c,)) or len(c.effect.parameters) > 1:
             continue
-        starts = _far_starts(few, near, c, _far(c))
+        starts = _far_starts(few, near, c, _far(c), bases)
         if starts and (cost := min(s.cost for s in starts)) < near.cost:
             reached.append((cost, c))
     reached.sort(key=lambda one: one[0])
@@ -137,26 +168,36 @@ def _strong(
 
 
 def _starts(
-    few: StructureBench, near: Fit, screening: Screening, candidate: Candidate
+    few: StructureBench,
+    near: Fit,
+    screening: Screening,
+    candidate: Candidate,
+    bases: Sequence[_StartingBase],
 ) -> list[CandidateFit]:
     """Return starts of a candidate, best first: along its tests, and far ones."""
     problem = make_problem(few, (*near.candidates, candidate))
     starts = [along(problem, near, d, SHORT) for d in screening.best(candidate, 2)]
     tails = (*_far(candidate), *few.hints(near, candidate))
-    starts += _far_starts(few, near, candidate, tails)
+    starts += _far_starts(few, near, candidate, tails, bases)
     return sorted(starts, key=lambda s: s.cost)
 
 
 def _far_starts(
-    few: StructureBench, near: Fit, candidate: Candidate, tails: Sequence[FloatArray]
+    few: StructureBench,
+    near: Fit,
+    candidate: Candidate,
+    tails: Sequence[FloatArray],
+    bases: Sequence[_StartingBase],
 ) -> list[CandidateFit]:
-    """Return starts at coordinates of a candidate, from the nominal and fitted base."""
-    problem = make_problem(few, (*near.candidates, candidate))
+    """Return starts at coordinates of a candidate, from each of the bases."""
+    candidates = (*near.candidates, candidate)
+    problem = make_problem(few, candidates)
     starts = []
     for tail in tails:
-        for base in (np.zeros_like(near.base), near.base):
-            x = np.concatenate([base, near.x[near.n_base :], tail])
-            starts.append(CandidateFit(problem, x, cost_at(problem, x, SHORT)))
+        for base in bases:
+            x = np.concatenate([base.x, tail])
+            cost = cost_at(replace(problem, bench=base.bench), x, SHORT)
+            starts.append(CandidateFit(problem, x, cost))
     return starts
 
 
