@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
@@ -324,25 +324,48 @@ def _step(
             break
         length = float(np.linalg.norm(step))
         if not how.sparing or length < SEARCH.shorter_step * failed:
-            trial = _moved(problem, x, step / size)
-            try_r, try_cost = _looked_at(problem, trial, how.resolution)
-            for _ in range(SEARCH.corrections):
-                if try_cost < cost or not np.isfinite(try_cost):
-                    break
-                gradient, before = near.gradient_with(trial, try_r), try_cost
-                stiff = h + SEARCH.stiff_damping * np.eye(h.shape[0])
-                step[free] = -_solve(stiff, (gradient / size)[free])
-                trial = _moved(problem, trial, step / size)
-                try_r, try_cost = _looked_at(problem, trial, how.resolution)
-                if how.sparing and try_cost > before:
-                    break
-            if np.isfinite(try_cost) and try_cost < cost:
-                return (trial, try_r, try_cost), max(damping / 10, SEARCH.least_damping)
+            tried = _tried(near, step, h, size, free, how)
+            if tried[2] < cost:
+                return tried, max(damping / 10, SEARCH.least_damping)
             failed = length
         damping = max(damping * 8, 1e-6)
         if damping > 1e7:
             break
     return None, damping
+
+
+def _tried(
+    near: _Neighbourhood,
+    step: FloatArray,
+    hessian: FloatArray,
+    size: FloatArray,
+    free: BoolArray,
+    how: Descent,
+) -> _Moved:
+    """Return where a step leads, corrected into the valley while it raises the cost.
+
+    Args:
+        near: where it begins.
+        step: over `size`, shape (n,).
+        hessian: over `size`, of the free coordinates.
+        size: root of the diagonal of the Hessian, shape (n,).
+        free: coordinates that are not held at a bound, shape (n,).
+        how: resolution, and whether the descent is sparing.
+    """
+    problem = near.problem
+    x = _moved(problem, near.x, step / size)
+    r, cost = _looked_at(problem, x, how.resolution)
+    stiff = hessian + SEARCH.stiff_damping * np.eye(len(hessian))
+    for _ in range(SEARCH.corrections):
+        if cost < near.cost or not np.isfinite(cost):
+            break
+        back, before = np.zeros(x.size), cost
+        back[free] = -_solve(stiff, (near.gradient_with(x, r) / size)[free])
+        x = _moved(problem, x, back / size)
+        r, cost = _looked_at(problem, x, how.resolution)
+        if how.sparing and cost > before:
+            break
+    return x, r, cost
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:

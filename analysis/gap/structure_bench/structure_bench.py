@@ -373,10 +373,6 @@ class StructureBench:
         """
         return replace(self, kept=frames_of(self.kept))
 
-    def bare(self) -> "StructureBench":
-        """Return the bench at rest, without what it was expanded by."""
-        return replace(self.at_rest(), directions=None, errors=None, bodies=None)
-
     def chosen(self, records: IntArray) -> "StructureBench":
         """Return the bench of some of its records."""
         hits = self.campaign.hits

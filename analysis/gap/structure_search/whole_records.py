@@ -132,8 +132,6 @@ def first_with_slopes(done: Sequence[JudgedFit]) -> list[JudgedFit]:
 def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
     """Return fits, accepted ones first; the slopes of all but the first go.
 
-    Of a bench on which a refused one was found, nothing more is asked.
-
     Args:
         done: fits, one of them for each explanation or more; the best one counts.
     """
@@ -141,13 +139,7 @@ def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
     best = {labels_of(one.fit.candidates): one for one in reversed(ranked)}
     ranked = [one for one in ranked if best[labels_of(one.fit.candidates)] is one]
     rest = [replace(one, fit=without_slopes(one.fit)) for one in ranked[1:]]
-    return [
-        *ranked[:1],
-        *(
-            one if one.acceptance.passed else replace(one, bench=one.bench.bare())
-            for one in rest
-        ),
-    ]
+    return ranked[:1] + rest
 
 
 def at_rest(one: JudgedFit) -> JudgedFit:
