@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.analysis.gap.model.effect import labels_of
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.effect import Candidate, labels_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Fit
 
@@ -54,10 +55,34 @@ def weakest_amplitude(fit: Fit) -> float:
 def amplitude_sizes(fit: Fit) -> list[float]:
     """Return the distance of each amplitude from OFF, in sd; infinite if fixed."""
     sd = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
-    at, sizes = fit.n_base, []
-    for candidate in fit.candidates:
-        first = candidate.effect.parameters[0]
-        free = first.upper - first.lower > 1e-3
-        sizes.append(float(abs(fit.x[at]) / sd[at]) if free else np.inf)
-        at += len(candidate.effect.parameters)
-    return sizes
+    return [
+        float(abs(fit.x[at]) / sd[at]) if _is_free(candidate) else np.inf
+        for at, candidate in zip(_amplitudes(fit), fit.candidates, strict=True)
+    ]
+
+
+def base_without(fit: Fit) -> FloatArray:
+    """Return the base that is best, by the linear model of a fit, with its effects off.
+
+    Args:
+        fit: at its minimum, with its slopes.
+
+    Returns:
+        Coordinates of the base, shape (n_base,).
+    """
+    found = zip(_amplitudes(fit), fit.candidates, strict=True)
+    off = [at for at, candidate in found if _is_free(candidate)]
+    covariance, n = fit.covariance, fit.n_base
+    weights = np.linalg.pinv(covariance[np.ix_(off, off)], hermitian=True)
+    return np.asarray(fit.base - covariance[:n, off] @ weights @ fit.x[off])
+
+
+def _amplitudes(fit: Fit) -> list[int]:
+    """Return where the amplitude of each effect stands among the coordinates."""
+    counts = [len(c.effect.parameters) for c in fit.candidates]
+    return [fit.n_base + int(k) for k in np.cumsum([0, *counts])[:-1]]
+
+
+def _is_free(candidate: Candidate) -> bool:
+    first = candidate.effect.parameters[0]
+    return first.upper - first.lower > 1e-3

@@ -41,6 +41,21 @@ class FoundBase:
     first: Acceptance
     before: FitSummary
 
+    def beside(self, weak: WeakEffects | None) -> "FoundBase":
+        """Return the base, with a channel that errors of bodies explain.
+
+        Errors of residues are taken as of one size in all channels, so a channel where
+        they are larger stands out.
+
+        Args:
+            weak: tests of weak effects, where the base leaves little.
+        """
+        if weak is None or self.first.passed or not weak.explains:
+            return self
+        base = self.base
+        first = accept_structure(self.whole, base, base, channels=False)
+        return replace(self, first=first)
+
     def complete(self, screening: Screening) -> StructureOutcome:
         """Return the outcome that nothing is missing, or that nothing was found.
 

@@ -11,7 +11,9 @@ from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
-def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
+def accept_structure(
+    bench: StructureBench, fit: Fit, base: Fit, *, channels: bool = True
+) -> Acceptance:
     """Judge a fit of whole records by its chi2, its base and where hits landed.
 
     A base can take over a loose bolt at an inconspicuous chi2 if one of its parameters
@@ -22,6 +24,8 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         bench: on which the fit was found.
         fit: to be judged.
         base: fit without effects.
+        channels: whether a channel that stands out is unexplained where the modal table
+            is uncertain.
     """
     dof = bench.blocks.dof / bench.coherence
     chi2 = fit.chi2 / dof
@@ -43,7 +47,7 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
         reason = mark_missed(bench.campaign, landing, common, error)
         if bench.uncertain and not (reason or fit.candidates):
             reason = _no_linear_structure(bench, fit)
-        if bench.uncertain and not reason:
+        if bench.uncertain and channels and not reason:
             reason = _channel_that_stands_out(bench, fit)
     return Acceptance(
         passed=not reason,

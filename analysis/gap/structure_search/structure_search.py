@@ -18,6 +18,7 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.basics.steady_memory import return_freed_memory
 from jointbench.analysis.gap.judgement.amplitudes import (
     amplitude_sizes,
+    base_without,
     weakest_amplitude,
 )
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
@@ -104,6 +105,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     weak = _weak(found, progress)
     if weak is not None and weak.fits:
         return found.weakly(weak)
+    found = found.beside(weak)
     if weak is not None and weak.complete and found.first.passed:
         differing = differences_from_base(found.whole, found.base, progress)
         return _needed_from_base(found, differing, weak)
@@ -307,13 +309,8 @@ def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:
 
 def _both_matter(judged: JudgedFit) -> bool:
     """Return whether each effect of a pair is clearly on."""
-    limit = judged.bench.policy.amplitude_limit
-    return _weakest(judged) >= limit
-
-
-def _weakest(judged: JudgedFit) -> float:
-    """Return the smallest distance of an amplitude of a fit from OFF, in sd."""
-    return weakest_amplitude(with_slopes(judged.bench, judged.fit))
+    amplitude = weakest_amplitude(with_slopes(judged.bench, judged.fit))
+    return amplitude >= judged.bench.policy.amplitude_limit
 
 
 def needless(
@@ -337,14 +334,17 @@ def needless(
         ended: cost of the base where it had ended.
         far_off: whether the base was.
     """
-    amplitude, uncertain = _weakest(best), best.bench.uncertain
+    fit, uncertain = with_slopes(best.bench, best.fit), best.bench.uncertain
+    amplitude = weakest_amplitude(fit)
     if amplitude >= STRUCTURE.plain_amplitude and (far_off or not uncertain):
         return None
     bare = make_problem(best.bench, ())
-    most = STRUCTURE.again_ratio * ended
-    if uncertain and cost_at(bare, best.fit.base, FULL) > most:
+    starts = [(cost_at(bare, x, FULL), x) for x in (fit.base, base_without(fit))]
+    cost, start = min(starts, key=lambda one: one[0])
+    if uncertain and cost > STRUCTURE.again_ratio * ended:
         return None
-    bench, base = settled(best.bench, best.fit.base, (), near=True)
+    del fit
+    bench, base = settled(best.bench, start, (), near=True)
     judged = accept_structure(bench, base, base)
     if bench.uncertain and takes(bench, best.fit, base):
         return None

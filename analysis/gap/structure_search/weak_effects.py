@@ -76,6 +76,11 @@ class WeakEffects:
     complete: bool = False
     suspected: Candidate | None = None
 
+    @property
+    def explains(self) -> bool:
+        """Whether errors of bodies explain what the base leaves, without an effect."""
+        return self.complete and self.left < WEAK.left
+
     def supports(self, fit: Fit) -> bool:
         """Return whether an effect takes a good part of what the base leaves here.
 
