@@ -9,7 +9,12 @@ import pytest
 from jointbench.analysis.gap.model.effect import Candidate, words_of
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_search.fit_summary import fit_summary
 from jointbench.analysis.gap.structure_search.found_base import FoundBase
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import UNTESTED
 from jointbench.analysis.gap.structure_search.weak_effects import WeakEffects
@@ -50,3 +55,36 @@ def test_an_effect_that_other_tests_do_not_support_is_not_named(base: FoundBase)
     outcome = base.doubtful(named, UNTESTED).outcome
     assert outcome.acceptance.unexplained and not outcome.best.candidates
     assert words_of((gain,)) in outcome.acceptance.reason
+
+
+@pytest.fixture(scope="module")
+def outstanding(uncertain: StructureBench) -> FoundBase:
+    """Return a base that leaves far more in the second channel than in the others."""
+    fit = minimise(make_problem(uncertain, ()), np.zeros(uncertain.base_sd.size))
+    left = np.full(uncertain.blocks.shape, 0.1 / np.sqrt(uncertain.coherence))
+    left[:, 1] *= 18.0
+    fit = replace(fit, residual=left.ravel())
+    first = accept_structure(uncertain, fit, fit)
+    return FoundBase(uncertain, fit, first, fit_summary(uncertain, fit))
+
+
+@pytest.mark.parametrize(
+    ("left", "complete"), [(2.0, True), (20.0, True), (2.0, False)]
+)
+def test_a_channel_stands_out_unless_errors_of_bodies_explain_it(
+    outstanding: FoundBase, left: float, complete: bool
+) -> None:
+    """Only where they leave little and no effect counts beside them."""
+    whole, base = outstanding.whole, outstanding.base
+    name = whole.campaign.bodies.channels[1]
+    assert outstanding.first.reason.startswith(f"{name} leaves chi2/dof")
+    weak = WeakEffects(whole, base.x, left, 100.0, UNTESTED, complete=complete)
+    judged = outstanding.beside(weak).first
+    assert judged.passed == (complete and left < 3.0)
+    assert judged.reason == ("" if judged.passed else outstanding.first.reason)
+
+
+def test_without_tests_of_weak_effects_a_base_keeps_its_acceptance(
+    outstanding: FoundBase,
+) -> None:
+    assert outstanding.beside(None) is outstanding
