@@ -94,8 +94,8 @@ def filter_hits(raw: RawHits, highest: float) -> HitRecords:
             f"required; {rejected[0].reason if rejected else 'record more hits'}"
         )
     found = _filtered(raw, highest, good, tuple(rejected))
-    samples = raw.hits[0].counts.shape[1]
-    kept = np.arange(samples - found.raw_force.shape[1], samples, found.filter.step)
+    start = raw.hits[0].counts.shape[1] - found.raw_force.shape[1]
+    kept = start + found.filter.step * np.arange(found.force.shape[1])
     gain = float(np.linalg.norm(found.filter.kernel))
     return replace(found, hum_left=hum.left(kept.astype(float)) / gain)
 
@@ -114,12 +114,16 @@ def _filtered(
     decimate = make_filter(band, raw.sample_rate)
     first = int(np.flatnonzero(contacts.any(axis=0))[0])
     start = max(first - decimate.half, 0)
+    samples = force.shape[1]
+    # What the filter would see after the end of a record is not recorded.
+    end = samples - min(decimate.half, int(HITS.most_trimmed * samples))
+    count = -(-(end - start) // decimate.step)
     noise = np.stack([h.noise[1:] for _, h in good])
-    response = [decimate(h.values[1:], start) for _, h in good]
+    response = [decimate(h.values[1:], start)[:, :count] for _, h in good]
     return HitRecords(
         names=tuple(hit.name for hit, _ in good),
         sample_rate=raw.sample_rate / decimate.step,
-        force=decimate(force, start),
+        force=decimate(force, start)[:, :count],
         response=np.stack(response),
         noise=noise * float(np.linalg.norm(decimate.kernel)),
         point=np.array([hit.point for hit, _ in good]),

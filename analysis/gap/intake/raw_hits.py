@@ -105,14 +105,13 @@ def make_filter(band: float, sample_rate: float) -> CommonFilter:
         band: highest frequency that is compared [Hz].
         sample_rate: of the raw records [Hz].
     """
-    step = max(int(sample_rate / (HITS.rate_over_band * band)), 1)
-    if step == 1:
+    stop, half_rate = HITS.stop_over_band * band, 0.5 * sample_rate
+    if stop >= half_rate:
         return CommonFilter(np.ones(1), 1)
-    half_rate = sample_rate / step / 2
-    width = (half_rate - band) / (sample_rate / 2)
+    step, width = int(half_rate / stop), (stop - band) / half_rate
     from scipy.signal import firwin, kaiserord  # slow to import
 
     taps, beta = kaiserord(HITS.stop_band, width)
-    cut = 0.5 * (band + half_rate)
+    cut = 0.5 * (band + stop)
     kernel = firwin(taps | 1, cut, window=("kaiser", beta), fs=sample_rate)
-    return CommonFilter(np.asarray(kernel), step)
+    return CommonFilter(np.asarray(kernel), step, stop)

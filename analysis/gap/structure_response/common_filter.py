@@ -16,10 +16,12 @@ class CommonFilter:
     Attributes:
         kernel: symmetric taps, shape (n_taps,).
         step: raw samples per sample.
+        stop: frequency from which nothing passes [Hz]; infinite if everything does.
     """
 
     kernel: FloatArray
     step: int
+    stop: float = np.inf
 
     def __post_init__(self) -> None:
         """Make the array read-only."""

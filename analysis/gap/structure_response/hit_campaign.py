@@ -65,6 +65,11 @@ class HitRecords:
     clamped_by: Literal["torque", "preload"] = "torque"
     hum_left: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
+    @property
+    def highest(self) -> float:
+        """Frequency from which there is neither force nor response [Hz]."""
+        return min(self.filter.stop, 0.5 * self.sample_rate)
+
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "force", "response", "noise", "point", "torque", "level")

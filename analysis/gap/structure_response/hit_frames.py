@@ -18,7 +18,8 @@ class HitFrame:
     Attributes:
         count: samples in the window.
         size: samples of the transform.
-        s: Laplace variable of each line [rad/s], shape (n_lines,).
+        s: Laplace variable of each line that the filter of the records passes [rad/s],
+            shape (n_lines,).
         force: transformed forces [N], shape (n_records, n_lines).
         growth: factor that removes the damping, shape (size,).
     """
@@ -44,7 +45,8 @@ class HitFrame:
         """
         inside = values[..., : self.size]
         damped = inside / self.growth[: inside.shape[-1]]
-        return np.asarray(scipy.fft.rfft(damped, self.size, axis=-1))
+        found = scipy.fft.rfft(damped, self.size, axis=-1)
+        return np.asarray(found[..., : self.s.size])
 
 
 def window_count(hits: HitRecords, window: float | None) -> int:
@@ -67,12 +69,13 @@ def hit_frame(hits: HitRecords, count: int) -> HitFrame:
     size = int(scipy.fft.next_fast_len(padded, real=True))
     decay = STRUCTURE.line_damping * hits.sample_rate / size
     growth = np.exp(decay * np.arange(size) / hits.sample_rate)
-    omega = 2 * np.pi * np.fft.rfftfreq(size, 1.0 / hits.sample_rate)
+    frequency = np.fft.rfftfreq(size, 1.0 / hits.sample_rate)
+    frequency = frequency[frequency <= hits.highest]
     force = scipy.fft.rfft(hits.force[:, :count] / growth[:count], size, axis=-1)
     return HitFrame(
         count,
         size,
-        np.asarray(decay + 1j * omega, dtype=np.complex128),
-        np.asarray(force),
+        np.asarray(decay + 2j * np.pi * frequency, dtype=np.complex128),
+        np.asarray(force[:, : frequency.size]),
         growth,
     )

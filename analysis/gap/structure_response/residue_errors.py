@@ -66,7 +66,7 @@ def residue_errors(
     channels = state.sensors_of(bodies) @ modes.shapes
     points = np.stack([p.direction @ p.rows for p in state.points_of(bodies)])
     points = points @ modes.shapes
-    near = modes.omega < 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
+    near = modes.omega < 2.0 * np.pi * campaign.hits.highest
     shape_sd = campaign.nominal.table_sd[1]
     mixing = mixing_of(campaign, bodies, modes)
     residue = points[:, None] * channels

@@ -141,14 +141,6 @@ class StructureSettings:
         "eigenvalue below which errors of residues depend on each other",
         "square root of rounding",
     )
-    tuned_band: float = numerical(
-        1.4,
-        "of the band",
-        "closed modes up to there have a frequency of their own where the modal table "
-        "is uncertain",
-        "a mode at 1.31 times the band left 1 % of the peaks of a complete bench "
-        "(540009), whose filter passes half of what is at 1.4; others pass less",
-    )
     least_phase: float = numerical(
         0.01,
         "rad",

@@ -93,7 +93,7 @@ def _close_pairs(coupling: FloatArray, modes: RealModes, chosen: IntArray) -> in
 
 def _highest(campaign: HitCampaign) -> float:
     """Return the angular frequency up to which closed modes are tuned [rad/s]."""
-    return 2.0 * np.pi * campaign.hits.band * STRUCTURE.tuned_band
+    return 2.0 * np.pi * campaign.hits.highest
 
 
 def _shifted(campaign: HitCampaign, modes: RealModes, sd: FloatArray) -> BoolArray:
