@@ -45,7 +45,12 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.second_method.second_method_settings import (
     SECOND_METHOD,
 )
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
+from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.analysis.gap.structure_search.weak_settings import WEAK
 from jointbench.simulators.campaigns.campaign_records import make_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
@@ -73,6 +78,9 @@ PARTS: Mapping[str, Any] = {
     "model error": MODEL_ERROR_SETTINGS,
     "modes and ports": MODAL,
     "bolted bodies": STRUCTURE,
+    "laws at bolts": PORT_LAWS,
+    "uncertain tables of bolted bodies": MODAL_TABLE,
+    "search on bolted bodies": STRUCTURE_SEARCH,
     "weak effects on bolted bodies": WEAK,
     "raw hits": HITS,
 }

@@ -13,11 +13,11 @@ import numpy as np
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_bench.table_whitening import free_whitening
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.residue_errors import (
     separable,
     typical_peaks,
 )
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 def beyond_table(bench: StructureBench, fit: Fit) -> tuple[str, float]:
@@ -37,7 +37,7 @@ def beyond_table(bench: StructureBench, fit: Fit) -> tuple[str, float]:
     if bench.errors is None or bench.directions is None:
         raise ValueError("errors of the table are not known yet")
     peak = typical_peaks(bench.campaign, np.abs(hits.response).max(axis=2))
-    floor = STRUCTURE.table_floor * peak
+    floor = MODAL_TABLE.table_floor * peak
     sigma = separable(bench.campaign, np.hypot(hits.noise, floor))
     off = bench.off(bench.response(fit.base, fit.terms, None))
     squares = np.empty(sigma.shape)

@@ -19,7 +19,7 @@ from jointbench.analysis.gap.structure_response.hit_frames import HitFrame
 from jointbench.analysis.gap.structure_response.hit_response import law_forces
 from jointbench.analysis.gap.structure_response.joint_state import JointState
 from jointbench.analysis.gap.structure_response.landing import landing_weights
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 
 
 class _LawBench(Protocol):
@@ -55,7 +55,7 @@ class LawSlopes:
 
     def by_base(self) -> list[ComplexArray]:
         """Return slopes by each base coordinate, of the shape of the forces."""
-        step = STRUCTURE.law_slope_step
+        step = PORT_LAWS.law_slope_step
         return [
             self._change(self.base + step * unit, self.terms, step)
             for unit in np.eye(self.base.size)
@@ -66,8 +66,8 @@ class LawSlopes:
         found = []
         for k, term in enumerate(self.terms):
             for i, value in enumerate(term.coordinates):
-                size = max(abs(float(value)), STRUCTURE.least_law_value)
-                step = STRUCTURE.law_slope_step * size
+                size = max(abs(float(value)), PORT_LAWS.least_law_value)
+                step = PORT_LAWS.law_slope_step * size
                 moved = term.coordinates.copy()
                 moved[i] += step
                 terms = list(self.terms)

@@ -49,6 +49,7 @@ from jointbench.analysis.gap.structure_response.landing import (
     landing_weights,
     mean_landing,
 )
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.residue_errors import (
     ResidueErrors,
     residue_errors,
@@ -128,8 +129,8 @@ class StructureBench:
 
         Of an uncertain modal table, errors of second order are left.
         """
-        stated = STRUCTURE.shape_floor * self.campaign.nominal.table_sd[1]
-        return max(STRUCTURE.table_floor, stated)
+        stated = MODAL_TABLE.shape_floor * self.campaign.nominal.table_sd[1]
+        return max(MODAL_TABLE.table_floor, stated)
 
     @property
     def coherence(self) -> float:

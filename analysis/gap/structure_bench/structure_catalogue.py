@@ -28,12 +28,12 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.joint_state import JointState
 from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
+from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 from jointbench.analysis.gap.structure_response.port_laws import (
     LawForm,
     PortLaws,
     spread_sliders,
 )
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 def _slide(
@@ -123,7 +123,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             (
                 _SHARE,
                 _slip(0.01, 100.0, 0.1, 0.5, 2.0),
-                _early(STRUCTURE.micro_share, 0.8, 0.37, 0.5),
+                _early(PORT_LAWS.micro_share, 0.8, 0.37, 0.5),
                 _PRELOAD,
                 _TAIL,
             ),
@@ -142,7 +142,7 @@ LAW_EFFECTS: tuple[StructureEffect, ...] = (
             (
                 _SHARE,
                 _slip(1e-3, 10.0, 0.03, 0.1, 0.3),
-                _early(1e-5, STRUCTURE.micro_share, 0.02, 1.5),
+                _early(1e-5, PORT_LAWS.micro_share, 0.02, 1.5),
                 _PRELOAD,
                 _TAIL,
                 _GRADUAL,

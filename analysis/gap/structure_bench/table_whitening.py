@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -164,7 +165,7 @@ def free_whitening(directions: FloatArray, errors: FloatArray) -> PointWhitening
     size = np.linalg.norm(flat, axis=1)
     flat = flat[size > 0.0] / size[size > 0.0, None]
     values, vectors = np.linalg.eigh(flat @ flat.T)
-    kept = values > STRUCTURE.free_rank * values[-1]
+    kept = values > MODAL_TABLE.free_rank * values[-1]
     basis = (vectors[:, kept] / np.sqrt(values[kept])).T @ flat
     taken = np.tile(np.eye(len(basis)), (directions.shape[2], 1, 1))
     return _whitening(directions, basis, taken)

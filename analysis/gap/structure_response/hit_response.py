@@ -32,6 +32,7 @@ from jointbench.analysis.gap.structure_response.port_integration import (
     averaging,
     integrate_laws,
 )
+from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 from jointbench.analysis.gap.structure_response.port_laws import LawForm, law_ports
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
@@ -302,7 +303,7 @@ def law_forces(
     hits, bodies = campaign.hits, state.bodies_of(campaign.bodies)
     step = hits.filter.step
     friction = all(law.kind == LawForm.FRICTION for law in state.laws)
-    parts = (STRUCTURE.slider_steps if friction else STRUCTURE.law_steps)[fine]
+    parts = (PORT_LAWS.slider_steps if friction else PORT_LAWS.law_steps)[fine]
     # Beyond the window: an end of the forces within it would ring back into it. They
     # are held from there on, so that they end where the transform has damped them.
     half = hits.filter.half

@@ -17,8 +17,8 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntAr
 from jointbench.analysis.gap.structure_response.acting_laws import ActingLaws
 from jointbench.analysis.gap.structure_response.closed_modes import ClosedModes
 from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 from jointbench.analysis.gap.structure_response.port_steps import integrate_hits
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,9 +83,9 @@ def integrate_laws(
     struck = _parts_of(modes.inputs @ columns.T)
     sharp = np.ascontiguousarray(_sharpened(force).T)
     scale = np.ascontiguousarray((preload[:, None] ** laws.preload).T)
-    corrections = STRUCTURE.slider_corrections
+    corrections = PORT_LAWS.slider_corrections
     if not laws.slides:
-        corrections = STRUCTURE.law_corrections
+        corrections = PORT_LAWS.law_corrections
     kept = -(-force.shape[1] // common.step)
     found = np.empty((len(force), len(laws.rows), kept))
     for block in _side_by_side(force):
@@ -102,7 +102,7 @@ def integrate_laws(
                 np.ascontiguousarray(struck[:, :, block]),
                 np.ascontiguousarray(sharp[:, block]),
             ),
-            (parts, corrections, STRUCTURE.rest_steps if laws.rests else 0),
+            (parts, corrections, PORT_LAWS.rest_steps if laws.rests else 0),
             out,
         )
         filtered = common.in_time(out.reshape(len(out), -1))
@@ -113,7 +113,7 @@ def integrate_laws(
 def _side_by_side(force: FloatArray) -> list[IntArray]:
     """Return the records in blocks, by their largest forces."""
     order = np.argsort(-np.abs(force).max(axis=1), kind="stable")
-    count = -(-order.size // STRUCTURE.hits_at_once)
+    count = -(-order.size // PORT_LAWS.hits_at_once)
     return list(np.array_split(order, count))
 
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 
 
 class LawForm(IntEnum):
@@ -86,10 +86,10 @@ def spread_sliders(
     way = _signed(tail)
     shape = _shape_of(early, way)
     mean = _mean(shape, way)
-    below, above = STRUCTURE.outer_sliders
+    below, above = PORT_LAWS.outer_sliders
     weakest, last = (_quantile(q, way) ** (1.0 / shape) for q in (below, 1.0 - above))
-    first = max(weakest, STRUCTURE.least_slip * mean)
-    edges = np.geomspace(first, last, STRUCTURE.sliders - 1)
+    first = max(weakest, PORT_LAWS.least_slip * mean)
+    edges = np.geomspace(first, last, PORT_LAWS.sliders - 1)
     left = np.concatenate([[1.0], _unslipped(edges**shape, way), [0.0]])
     left[-2] = above  # exact even where strengths end as abruptly as Coulomb's
     held = np.concatenate([[0.0], _held(edges, shape, way), [mean]])
@@ -101,7 +101,7 @@ def spread_sliders(
 def _signed(tail: float) -> float:
     """Return h of a tail; Weibull's strengths are those of a very small one."""
     h = tail / (1.0 - abs(tail))
-    least = STRUCTURE.least_tail
+    least = PORT_LAWS.least_tail
     return float(np.copysign(max(abs(h), least), h))
 
 
@@ -149,7 +149,7 @@ def _shape_of(early: float, h: float) -> float:
         u = (0.5 * _mean(shape, h)) ** shape
         return float(np.log((1.0 - _unslipped(u, h)) / early))
 
-    least, most = STRUCTURE.shapes
+    least, most = PORT_LAWS.shapes
     # Below h the strengths have no mean.
     low, high = np.log(max(least, 1.02 * h)), np.log(most)
     if beyond(low) <= 0.0:

@@ -21,6 +21,7 @@ from jointbench.analysis.gap.structure_response.closed_modes import (
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.joint_state import JointState
 from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_response.tuned_modes import TunedModes
 
@@ -41,7 +42,7 @@ def tuned_modes(campaign: HitCampaign, state: JointState) -> TunedModes | None:
     coupling = _coupling(campaign, campaign.bodies, modes)
     shifted = _shifted(campaign, modes, _frequency_sd(coupling, modes))
     near = np.flatnonzero(shifted & (modes.omega < _highest(campaign)))
-    count = max(_close_pairs(coupling, modes, near), STRUCTURE.least_pairs)
+    count = max(_close_pairs(coupling, modes, near), MODAL_TABLE.least_pairs)
     mass, _, _ = mass_damping_stiffness(campaign.bodies, state, 1.0)
     return _tuned(mass, coupling, modes, near, count)
 
@@ -88,7 +89,7 @@ def tuned_again(
 def _close_pairs(coupling: FloatArray, modes: RealModes, chosen: IntArray) -> int:
     """Return how many pairs of some modes are so close that they have a coupling."""
     mixing = np.triu(_mixing(coupling, modes)[np.ix_(chosen, chosen)])
-    return int(np.sum(mixing > STRUCTURE.close_mixing))
+    return int(np.sum(mixing > MODAL_TABLE.close_mixing))
 
 
 def _highest(campaign: HitCampaign) -> float:
@@ -100,7 +101,7 @@ def _shifted(campaign: HitCampaign, modes: RealModes, sd: FloatArray) -> BoolArr
     """Return which modes errors of the table shift during a record, shape (n,)."""
     elastic = modes.omega > STRUCTURE.rigid_share * _highest(campaign)
     duration = campaign.hits.response.shape[2] / campaign.hits.sample_rate
-    return np.asarray(elastic & (sd * modes.omega * duration > STRUCTURE.least_phase))
+    return np.asarray(elastic & (sd * modes.omega * duration > MODAL_TABLE.least_phase))
 
 
 def _tuned(
@@ -127,7 +128,7 @@ def _tuned(
     between = np.sqrt(coupling[both][first, second])
     between /= 2.0 * omega[first] * omega[second]
     alone = _frequency_sd(coupling, modes)[chosen]
-    sd = np.maximum(np.concatenate([alone, between]), STRUCTURE.least_tuning)
+    sd = np.maximum(np.concatenate([alone, between]), MODAL_TABLE.least_tuning)
     rows = (mass @ modes.shapes[:, chosen]).T
     return TunedModes(rows, omega, np.stack([first, second], axis=1), sd)
 

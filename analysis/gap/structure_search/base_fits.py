@@ -21,6 +21,9 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     settled,
     with_errors_found,
 )
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 
 
 def base_in_windows(few: StructureBench) -> FloatArray:
@@ -30,7 +33,7 @@ def base_in_windows(few: StructureBench) -> FloatArray:
         few: one record of each condition.
     """
     x = np.zeros(few.base_sd.size)
-    for window in STRUCTURE.base_windows:
+    for window in STRUCTURE_SEARCH.base_windows:
         floor = max(STRUCTURE.coarse_floor, few.table_floor)
         few = few.at(x, (), few.landing, floor)
         problem = make_problem(few, ())
@@ -60,7 +63,7 @@ def base_in_whole_records(
     # What one record of each condition takes is needed for all of them.
     del few, fit
     bench = replace(bench, layout=layout)
-    if chi2 < STRUCTURE.explaining_chi2:
+    if chi2 < STRUCTURE_SEARCH.explaining_chi2:
         return settled(bench, x, (), near=True)
     whole = bench.at(x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)

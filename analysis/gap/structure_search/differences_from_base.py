@@ -15,12 +15,14 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.fits_from_base import (
     fits_from_base,
     tested_beside,
 )
 from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 
 
@@ -40,7 +42,7 @@ def differences_from_base(
     own = with_any_errors(whole.chosen(one_of_each(whole.campaign.hits)))
     differing = [c for c in own.candidates if differs(own, c)]
     _, found = tested_beside(own, base, differing)
-    least = STRUCTURE.difference_drop
+    least = STRUCTURE_SEARCH.difference_drop
     return fits_from_base(whole, own, base, found, progress, least=least)
 
 
@@ -56,7 +58,8 @@ def takes_differences(bench: StructureBench, fit: Fit, base: Fit) -> bool:
         return False
     own = with_any_errors(bench)
     left = own.residual(base.base, (), FULL), own.residual(fit.base, fit.terms, FULL)
-    return float(left[0] @ left[0] - left[1] @ left[1]) > STRUCTURE.difference_drop
+    drop = float(left[0] @ left[0] - left[1] @ left[1])
+    return drop > STRUCTURE_SEARCH.difference_drop
 
 
 def differs(bench: StructureBench, candidate: Candidate) -> bool:
@@ -79,5 +82,5 @@ def with_any_errors(bench: StructureBench) -> StructureBench:
     if bench.errors is None:
         raise ValueError("errors of the table are not known yet")
     sd = np.maximum(bench.errors.sd, bench.errors.sd.mean(axis=(0, 1)))
-    errors = replace(bench.errors, sd=STRUCTURE.any_error * sd)
+    errors = replace(bench.errors, sd=STRUCTURE_SEARCH.any_error * sd)
     return replace(bench, errors=errors, kept={})

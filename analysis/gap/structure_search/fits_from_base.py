@@ -13,18 +13,20 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Direction, Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import settled
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     at_rest,
     best_first,
 )
 
-WINDOW = Resolution(STRUCTURE.approach_windows[-1])
+WINDOW = Resolution(STRUCTURE_SEARCH.approach_windows[-1])
 """Of the directed tests beside a base."""
 
 
@@ -62,9 +64,9 @@ def fits_from_base(
         progress: receives one line for each fit.
         least: drop of a test below which its effect is not fitted.
     """
-    least = max(least, STRUCTURE.test_share * found.largest)
+    least = max(least, STRUCTURE_SEARCH.test_share * found.largest)
     done: list[JudgedFit] = []
-    for candidate in found.leaders(STRUCTURE.whole_fits):
+    for candidate in found.leaders(STRUCTURE_SEARCH.whole_fits):
         test = found.best(candidate, 1)[0]
         if test.drop < least:
             break
@@ -84,7 +86,7 @@ def _fit_from_base(
     """
     candidates = (test.candidate,)
     start = np.concatenate([base.base, test.coordinates])
-    steps = STRUCTURE.approach_iterations
+    steps = STRUCTURE_SEARCH.approach_iterations
     problem = make_problem(few, candidates)
     near = minimise(problem, start, WINDOW, iterations=steps, exact_slopes=False)
     start = np.concatenate([base.base, near.x[near.n_base :]])

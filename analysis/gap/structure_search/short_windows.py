@@ -16,11 +16,13 @@ from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.continued_laws import with_continued
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 
-SHORT = Resolution(STRUCTURE.base_windows[1])
-LONGER = Resolution(STRUCTURE.base_windows[2])
+SHORT = Resolution(STRUCTURE_SEARCH.base_windows[1])
+LONGER = Resolution(STRUCTURE_SEARCH.base_windows[2])
 
 
 def tested(few: StructureBench, near: Fit) -> Screening:
@@ -61,19 +63,19 @@ def carried(
                 s.problem,
                 s.x,
                 SHORT,
-                iterations=STRUCTURE.short_iterations,
+                iterations=STRUCTURE_SEARCH.short_iterations,
                 rival=rival,
                 exact_slopes=False,
             )
-            for s in starts[: STRUCTURE.starts_kept]
+            for s in starts[: STRUCTURE_SEARCH.starts_kept]
         ]
         fits += sorted(found, key=lambda f: f.cost)[:1]
         rival = min((f.cost for f in fits), default=None)
-    fits = with_continued(few, fits, SHORT, STRUCTURE.short_iterations)
+    fits = with_continued(few, fits, SHORT, STRUCTURE_SEARCH.short_iterations)
     fits.sort(key=lambda f: score(few, f))
     longer: list[Fit] = []
     rival = None
-    for fit in fits[: STRUCTURE.longer_fits]:
+    for fit in fits[: STRUCTURE_SEARCH.longer_fits]:
         progress(f"{words_of(fit.candidates)} in a longer window")
         own = few.at(fit.base, fit.terms, few.landing, few.floor)
         longer.append(
@@ -81,13 +83,13 @@ def carried(
                 make_problem(own, fit.candidates),
                 fit.x,
                 LONGER,
-                iterations=STRUCTURE.longer_iterations,
+                iterations=STRUCTURE_SEARCH.longer_iterations,
                 rival=rival,
                 exact_slopes=False,
             )
         )
         rival = min(f.cost for f in longer)
-    longer = with_continued(few, longer, LONGER, STRUCTURE.longer_iterations)
+    longer = with_continued(few, longer, LONGER, STRUCTURE_SEARCH.longer_iterations)
     return sorted(longer, key=lambda f: score(few, f))
 
 
@@ -129,9 +131,9 @@ def _chosen(
     others: list[Candidate] = []
     for c in screening.leaders(len(few.candidates)):
         same = sum(c.effect.name == one.effect.name for one in others)
-        if c not in chosen and same < STRUCTURE.leading_sites:
+        if c not in chosen and same < STRUCTURE_SEARCH.leading_sites:
             others.append(c)
-    leaders = others[: STRUCTURE.leaders]
+    leaders = others[: STRUCTURE_SEARCH.leaders]
     place = [
         c
         for c in free
@@ -154,7 +156,10 @@ def _strong(
     Directed tests mislead about a stiff spring or a large mass at a point, which has
     the most sites; laws and effects that are always tried are left out.
     """
-    if near.chi2 * few.coherence < STRUCTURE.explaining_chi2 * near.residual.size:
+    if (
+        near.chi2 * few.coherence
+        < STRUCTURE_SEARCH.explaining_chi2 * near.residual.size
+    ):
         return []
     reached = []
     for c in others:
@@ -164,7 +169,7 @@ def _strong(
         if starts and (cost := min(s.cost for s in starts)) < near.cost:
             reached.append((cost, c))
     reached.sort(key=lambda one: one[0])
-    return [c for _, c in reached[: STRUCTURE.strong_sites]]
+    return [c for _, c in reached[: STRUCTURE_SEARCH.strong_sites]]
 
 
 def _starts(

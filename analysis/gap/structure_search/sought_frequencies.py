@@ -15,10 +15,12 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.structure_fits import (
     approached,
     chi2_per_dof,
+)
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
 )
 
 
@@ -34,8 +36,8 @@ def from_other_frequencies(
         fit: with or without effects.
     """
     chi2 = chi2_per_dof(few, fit)
-    usual = STRUCTURE.sought_chi2 * few.policy.floor_chi2
-    if not (few.uncertain and usual < chi2 < STRUCTURE.explaining_chi2):
+    usual = STRUCTURE_SEARCH.sought_chi2 * few.policy.floor_chi2
+    if not (few.uncertain and usual < chi2 < STRUCTURE_SEARCH.explaining_chi2):
         return None
     if (start := sought(few, fit)) is None:
         return None
@@ -53,7 +55,7 @@ def sought(few: StructureBench, fit: Fit) -> FloatArray | None:
     tuned = few.layout.tuned
     if tuned is None:
         return None
-    window = STRUCTURE.approach_windows[0]
+    window = STRUCTURE_SEARCH.approach_windows[0]
     # Priors would draw a frequency back; the fit that follows weighs them.
     free = np.zeros(fit.x.size)
     problem = replace(make_problem(few, fit.candidates), prior=free)
@@ -61,11 +63,11 @@ def sought(few: StructureBench, fit: Fit) -> FloatArray | None:
     cost = cost_at(problem, x, Resolution(window))
     for k, name in enumerate(tuned.names[: tuned.omega.size]):
         at = few.layout.at(name)
-        step = 2.0 * np.pi * STRUCTURE.sought_turn / window / tuned.omega[k]
-        count = int(STRUCTURE.sought_reach / step)
+        step = 2.0 * np.pi * STRUCTURE_SEARCH.sought_turn / window / tuned.omega[k]
+        count = int(STRUCTURE_SEARCH.sought_reach / step)
         shifts = step * np.concatenate([np.arange(-count, 0), np.arange(1, count + 1)])
         starts = [x + shift * (np.arange(x.size) == at) for shift in shifts]
         costs = [cost_at(problem, one, Resolution(window)) for one in starts]
-        if costs and min(costs) < (1.0 - STRUCTURE.sought_share) * cost:
+        if costs and min(costs) < (1.0 - STRUCTURE_SEARCH.sought_share) * cost:
             x, cost, found = starts[int(np.argmin(costs))], min(costs), True
     return x if found else None

@@ -8,7 +8,11 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.structure_bench.beyond_table import beyond_table
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.landing import mark_missed
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 
 
 def accept_structure(
@@ -66,7 +70,7 @@ def _no_linear_structure(bench: StructureBench, fit: Fit) -> str:
     level, chi2 = beyond_table(bench, fit)
     if chi2 < bench.policy.floor_chi2:
         return ""
-    share = STRUCTURE.table_floor * np.sqrt(chi2)
+    share = MODAL_TABLE.table_floor * np.sqrt(chi2)
     return f"at {level}, {share:.2%} of the peak is due to no error of the modal table"
 
 
@@ -79,7 +83,7 @@ def _channel_that_stands_out(bench: StructureBench, fit: Fit) -> str:
     squares = fit.residual.reshape(bench.blocks.shape) ** 2
     chi2 = np.mean(squares, axis=(0, 2)) * bench.coherence
     worst, typical = int(np.argmax(chi2)), float(np.median(chi2))
-    limit = max(bench.policy.floor_chi2, STRUCTURE.outstanding_channel * typical)
+    limit = max(bench.policy.floor_chi2, STRUCTURE_SEARCH.outstanding_channel * typical)
     if chi2[worst] <= limit:
         return ""
     name = bench.campaign.bodies.channels[worst]

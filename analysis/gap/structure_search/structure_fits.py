@@ -31,7 +31,10 @@ from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 
 
 def approached(
@@ -66,7 +69,7 @@ def in_windows(
         rival: cost per row of the best fit so far, which a descent should reach.
     """
     x = start
-    for window in STRUCTURE.approach_windows:
+    for window in STRUCTURE_SEARCH.approach_windows:
         few, fit = _settled_in(few, x, candidates, Resolution(window), rival=rival)
         x = fit.x
         if not near_records(few, fit):
@@ -98,7 +101,7 @@ def with_errors_found(layout: BaseLayout, base: Fit, *, explains: bool) -> BaseL
         return layout
     own = np.array([layout.at(name) for name in layout.tuned.names], dtype=np.int64)
     alone = own[: layout.tuned.omega.size]
-    free = alone[layout.sd[alone] > STRUCTURE.open_frequency]
+    free = alone[layout.sd[alone] > MODAL_TABLE.open_frequency]
     if not free.size:
         return layout
     deviations = np.abs(base.prior_deviations[free])
@@ -107,7 +110,7 @@ def with_errors_found(layout: BaseLayout, base: Fit, *, explains: bool) -> BaseL
     if explains:
         found = max(found, float(np.sqrt(np.mean(deviations**2))))
     sd = layout.sd.copy()
-    sd[own] *= float(np.clip(found, 1.0, STRUCTURE.largest_size))
+    sd[own] *= float(np.clip(found, 1.0, MODAL_TABLE.largest_size))
     return replace(layout, sd=sd)
 
 
@@ -123,7 +126,7 @@ def chi2_per_dof(bench: StructureBench, fit: Fit) -> float:
 
 def near_records(bench: StructureBench, fit: Fit) -> bool:
     """Return whether a fit is so near the records that they show where hits landed."""
-    return chi2_per_dof(bench, fit) < STRUCTURE.near_chi2
+    return chi2_per_dof(bench, fit) < STRUCTURE_SEARCH.near_chi2
 
 
 def _settled_in(
@@ -138,7 +141,7 @@ def _settled_in(
     rows = _rows(few, window)
     landing = few.landing
     given: SlopesOnHand | None = None
-    for k in range(STRUCTURE.approach_rounds):
+    for k in range(STRUCTURE_SEARCH.approach_rounds):
         terms = split(x, few.base_sd.size, candidates)
         base = x[: few.base_sd.size]
         few = few.at(base, terms, landing, few.floor, window.window)
@@ -146,7 +149,7 @@ def _settled_in(
         before = cost_at(problem, x, window)
         how = Descent(
             window,
-            iterations=STRUCTURE.approach_iterations,
+            iterations=STRUCTURE_SEARCH.approach_iterations,
             rival=None if rival is None else rival * rows,
             exact_slopes=False,
             least_drop=_least_drop(few, candidates, window),
@@ -155,7 +158,7 @@ def _settled_in(
         )
         fit = _stated(few, descend(problem, x, how, given))
         x = fit.x
-        if k and before - fit.cost < STRUCTURE.settled_share * fit.cost:
+        if k and before - fit.cost < STRUCTURE_SEARCH.settled_share * fit.cost:
             break
         if not near_records(few, fit) or _base_is_far_off(few, fit):
             break
@@ -171,7 +174,7 @@ def _base_is_far_off(few: StructureBench, fit: Fit) -> bool:
     """
     if fit.candidates or not few.uncertain:
         return False
-    return chi2_per_dof(few, fit) > STRUCTURE.explaining_chi2
+    return chi2_per_dof(few, fit) > STRUCTURE_SEARCH.explaining_chi2
 
 
 def _left_to_next(bench: StructureBench, fit: Fit) -> tuple[Fit, SlopesOnHand | None]:
@@ -188,10 +191,10 @@ def _least_drop(
     bench: StructureBench, candidates: Sequence[Candidate], window: Resolution
 ) -> float:
     """Return the drop of the cost below which a fit need not continue."""
-    least = STRUCTURE.table_drop if bench.uncertain else 0.0
+    least = STRUCTURE_SEARCH.table_drop if bench.uncertain else 0.0
     if not bench.nonlinear(candidates):
         return least
-    return max(least, STRUCTURE.law_drop * _rows(bench, window))
+    return max(least, STRUCTURE_SEARCH.law_drop * _rows(bench, window))
 
 
 def _dof(bench: StructureBench, window: Resolution) -> float | None:
@@ -227,7 +230,7 @@ def settled(
     """
     bench = _met(bench, start, candidates, near=near)
     fit = _whole(bench, start, candidates)
-    for _ in range(STRUCTURE.settling_rounds):
+    for _ in range(STRUCTURE_SEARCH.settling_rounds):
         landing, before = bench.landing, fit.cost
         fit, given = _left_to_next(bench, fit)
         near = near_records(bench, fit)
@@ -235,13 +238,15 @@ def settled(
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
         fit = _whole(bench, fit.x, candidates, given, exact=near and given is None)
-        least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
+        least = (
+            STRUCTURE_SEARCH.settled_share if near else STRUCTURE_SEARCH.approach_share
+        )
         if before - fit.cost < least * fit.cost:
             break
     if near and not bench.nonlinear(candidates):
         return bench, fit
     fit, given = _left_to_next(bench, fit)
-    steps = STRUCTURE.fine_iterations
+    steps = STRUCTURE_SEARCH.fine_iterations
     return bench, fitted_finely(bench, fit.x, candidates, steps, given)
 
 
@@ -255,7 +260,7 @@ def _met(
     """Return the bench at a start, about where its hits landed if that is near."""
     n = bench.base_sd.size
     terms = split(start, n, candidates)
-    windows = (*STRUCTURE.landing_windows, None) if near else (None,)
+    windows = (*STRUCTURE_SEARCH.landing_windows, None) if near else (None,)
     bench = bench.at(start[:n], terms, bench.landing, bench.table_floor, windows[0])
     for window, following in pairwise(windows):
         landing, _ = bench.landed(start[:n], terms, window)
@@ -297,7 +302,7 @@ def _whole(
     """Fit whole records, hits as expanded; if exact, with the slopes at the end."""
     how = Descent(
         FULL,
-        iterations=STRUCTURE.whole_iterations,
+        iterations=STRUCTURE_SEARCH.whole_iterations,
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
         dof=_dof(bench, FULL),
@@ -332,7 +337,7 @@ def _weighed(
     count = window_count(hits, window.window)
     of_point = len(hits.names) / np.unique(hits.point).size
     alike = of_point * count / max(2 * modes, 1)
-    weighed = np.flatnonzero(bench.base_sd < STRUCTURE.weighed_sd)
+    weighed = np.flatnonzero(bench.base_sd < STRUCTURE_SEARCH.weighed_sd)
     prior[weighed] *= max(alike / bench.coherence, 1.0)
     return replace(problem, prior=prior)
 

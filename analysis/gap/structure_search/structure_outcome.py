@@ -14,10 +14,12 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening
 from jointbench.analysis.gap.search.selection_round import score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.fit_summary import FitSummary
 from jointbench.analysis.gap.structure_search.sensors_from_base import of_table
 from jointbench.analysis.gap.structure_search.structure_fits import fitted_finely
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     with_slopes,
@@ -103,6 +105,6 @@ def _alike(best: JudgedFit, fit: Fit) -> Fit:
         return fitted_finely(best.bench, fit.x, fit.candidates, 3)
     problem = make_problem(best.bench, fit.candidates)
     # Frequencies that a table leaves open are those of the closed modes of the best.
-    steps = STRUCTURE.whole_iterations if best.bench.uncertain else 3
+    steps = STRUCTURE_SEARCH.whole_iterations if best.bench.uncertain else 3
     found = minimise(problem, fit.x, FULL, iterations=steps, exact_slopes=False)
     return without_slopes(found)

@@ -29,7 +29,6 @@ from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.base_fits import (
     base_in_whole_records,
     base_in_windows,
@@ -68,6 +67,9 @@ from jointbench.analysis.gap.structure_search.structure_outcome import (
     StructureOutcome,
     without_effects,
 )
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.analysis.gap.structure_search.weak_effects import (
     WeakEffects,
     supported_fits,
@@ -98,7 +100,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
     few = bench.chosen(one_of_each(bench.campaign.hits))
     few, start = retuned(few, base_in_windows(few), ())
     progress("base in whole records")
-    bench = replace(bench, reach=STRUCTURE.final_reach, layout=few.layout)
+    bench = replace(bench, reach=STRUCTURE_SEARCH.final_reach, layout=few.layout)
     found = judged_base(*base_in_whole_records(bench, few, start))
     few = few.at(start, (), few.landing, few.table_floor)
     bench, few = (replace(one, layout=found.whole.layout) for one in (bench, few))
@@ -190,7 +192,7 @@ def _searched(
     done = supported
     # A fit from the base would lead back to it.
     if all(one.fit.candidates != done[0].fit.candidates for one in from_base):
-        far_off = chi2_per_dof(found.whole, base) > STRUCTURE.explaining_chi2
+        far_off = chi2_per_dof(found.whole, base) > STRUCTURE_SEARCH.explaining_chi2
         if complete := needless(done[0], screening, base.cost, far_off=far_off):
             return complete
     # Errors of a modal table are as large as a second effect and as manifold.
@@ -231,7 +233,7 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
         if c.effect.name not in aimed and not own.nonlinear((c,))
     ]
     found = screen(own, near, linear, resolution=LONGER)
-    return found.largest > STRUCTURE.taken_share * near.chi2
+    return found.largest > STRUCTURE_SEARCH.taken_share * near.chi2
 
 
 def _tested_from_base(bench: StructureBench, candidate: Candidate) -> bool:
@@ -250,9 +252,9 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
     if bench.uncertain:
         if within_tolerance(bench, fit):
             return False
-        least = STRUCTURE.uncertain_drop * of_table(bench, fit)
+        least = STRUCTURE_SEARCH.uncertain_drop * of_table(bench, fit)
         return base.cost - fit.cost > least or takes_differences(bench, fit, base)
-    return fit.chi2 < (1.0 - STRUCTURE.taken_share) * base.chi2
+    return fit.chi2 < (1.0 - STRUCTURE_SEARCH.taken_share) * base.chi2
 
 
 def _needed(one: JudgedFit, base: Fit) -> bool:
@@ -272,7 +274,7 @@ def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None
         pair: fit of two effects.
     """
     sizes = amplitude_sizes(with_slopes(pair.bench, pair.fit))
-    if not pair.acceptance.passed or min(sizes) >= STRUCTURE.plain_amplitude:
+    if not pair.acceptance.passed or min(sizes) >= STRUCTURE_SEARCH.plain_amplitude:
         return None
     kept = pair.fit.terms[int(np.argmax(sizes))]
     start = np.concatenate([pair.fit.base, kept.coordinates])
@@ -286,11 +288,13 @@ def _with_a_second(
 ) -> list[Fit]:
     """Add a second effect to the best single ones, in short windows, best first."""
     pairs: list[Fit] = []
-    for first in singles[: STRUCTURE.first_effects]:
+    for first in singles[: STRUCTURE_SEARCH.first_effects]:
         own = few.at(first.base, first.terms, few.landing, few.floor)
         problem = make_problem(own, first.candidates)
         progress(f"directed tests beside {words_of(first.candidates)}")
-        near = minimise(problem, first.x, SHORT, iterations=STRUCTURE.short_iterations)
+        near = minimise(
+            problem, first.x, SHORT, iterations=STRUCTURE_SEARCH.short_iterations
+        )
         pairs += carried(own, near, tested(own, near), progress)
     different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
     return affordable(few, _best_first(few, list(different.values())))
@@ -299,7 +303,7 @@ def _with_a_second(
 def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:
     """Return pairs for whole records: few with a law, which is integrated there."""
     laws = [f for f in pairs if few.nonlinear(f.candidates)]
-    left = laws[STRUCTURE.law_pairs :]
+    left = laws[STRUCTURE_SEARCH.law_pairs :]
     return [f for f in pairs if all(f is not one for one in left)]
 
 
@@ -336,12 +340,12 @@ def needless(
     """
     fit, uncertain = with_slopes(best.bench, best.fit), best.bench.uncertain
     amplitude = weakest_amplitude(fit)
-    if amplitude >= STRUCTURE.plain_amplitude and (far_off or not uncertain):
+    if amplitude >= STRUCTURE_SEARCH.plain_amplitude and (far_off or not uncertain):
         return None
     bare = make_problem(best.bench, ())
     starts = [(cost_at(bare, x, FULL), x) for x in (fit.base, base_without(fit))]
     cost, start = min(starts, key=lambda one: one[0])
-    if uncertain and cost > STRUCTURE.again_ratio * ended:
+    if uncertain and cost > STRUCTURE_SEARCH.again_ratio * ended:
         return None
     del fit
     bench, base = settled(best.bench, start, (), near=True)

@@ -31,7 +31,6 @@ from jointbench.analysis.gap.structure_response.residue_errors import (
     separable,
     typical_peaks,
 )
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.differences_from_base import differs
 from jointbench.analysis.gap.structure_search.fits_from_base import WINDOW
 from jointbench.analysis.gap.structure_search.records_of_search import hardest
@@ -41,6 +40,9 @@ from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import settled
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.analysis.gap.structure_search.weak_settings import WEAK
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
@@ -98,7 +100,7 @@ class WeakEffects:
             return True
         problem = make_problem(own, fit.candidates)
         start = np.concatenate([self.x, fit.x[fit.n_base :]])
-        steps = STRUCTURE.approach_iterations
+        steps = STRUCTURE_SEARCH.approach_iterations
         found = completed(minimise(problem, start, WINDOW, iterations=steps))
         return beyond_noise(own, found) < max(WEAK.left, WEAK.part * self.left)
 
@@ -257,15 +259,15 @@ def _explaining(
     """
     fits: list[Fit] = []
     least = max(WEAK.drop, WEAK.rival * found.largest)
-    for candidate in found.leaders(STRUCTURE.whole_fits):
-        tests = found.best(candidate, STRUCTURE.starts_kept)
+    for candidate in found.leaders(STRUCTURE_SEARCH.whole_fits):
+        tests = found.best(candidate, STRUCTURE_SEARCH.starts_kept)
         if tests[0].drop < least:
             break
         progress(f"{words_of((candidate,))} as a weak effect")
         problem = make_problem(own, (candidate,))
         starts = [along(problem, near, test, WINDOW) for test in tests]
         start = min(starts, key=lambda one: one.cost)
-        steps = STRUCTURE.approach_iterations
+        steps = STRUCTURE_SEARCH.approach_iterations
         fits.append(minimise(problem, start.x, WINDOW, iterations=steps))
     fits.sort(key=lambda one: score(own, one))
     if fits and fits[0].cost < WEAK.part * near.cost:
@@ -296,7 +298,7 @@ def _once_more(
     moved = weighed_by_bodies(about, best.base, best.terms)
     if moved is None:
         return own, near, list(fits)
-    steps = STRUCTURE.approach_iterations
+    steps = STRUCTURE_SEARCH.approach_iterations
     again = [
         minimise(make_problem(moved, one.candidates), one.x, WINDOW, iterations=steps)
         for one in (near, *fits)

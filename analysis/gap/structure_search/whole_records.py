@@ -14,7 +14,6 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.continued_laws import continued
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
@@ -28,6 +27,9 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     in_windows,
     near_records,
     settled,
+)
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
 )
 
 
@@ -70,9 +72,9 @@ def in_whole_records(
     met = _met_in_windows(few, carried, progress)
     near: list[_Found] = []
     for own, fit in met:
-        limit = STRUCTURE.whole_cost_ratio
+        limit = STRUCTURE_SEARCH.whole_cost_ratio
         if any(_explains(one) for one in near):
-            limit = STRUCTURE.explained_cost_ratio
+            limit = STRUCTURE_SEARCH.explained_cost_ratio
         if _cost_per_row(fit) > limit * _cost_per_row(met[0][1]):
             continue
         progress(f"{words_of(fit.candidates)} in whole records")
@@ -83,7 +85,7 @@ def in_whole_records(
     near = _from_other_frequencies(near, progress)
     done: list[JudgedFit] = []
     for own, fit in near:
-        if fit.cost > near[0][1].cost + STRUCTURE.cost_above_best:
+        if fit.cost > near[0][1].cost + STRUCTURE_SEARCH.cost_above_best:
             break
         if labels_of(fit.candidates) in known:
             continue
@@ -230,8 +232,8 @@ def worth_it(few: StructureBench, carried: Sequence[Fit]) -> list[Fit]:
     family = {c.effect.family for c in best.candidates if few.nonlinear((c,))}
     near = [
         f
-        for f in carried[: STRUCTURE.whole_fits]
-        if f.cost < STRUCTURE.whole_cost_ratio * best.cost
+        for f in carried[: STRUCTURE_SEARCH.whole_fits]
+        if f.cost < STRUCTURE_SEARCH.whole_cost_ratio * best.cost
     ]
     turn: dict[frozenset[str], Fit] = {}
     for fit in carried:

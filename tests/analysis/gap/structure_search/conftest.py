@@ -11,10 +11,12 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import search_structure
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 
@@ -32,6 +34,6 @@ def uncertain(found: StructureOutcome) -> StructureBench:
     campaign = found.base_bench.campaign
     nominal = replace(campaign.nominal, table_sd=(0.005, 0.02))
     bench = make_structure_bench(replace(campaign, nominal=nominal))
-    few = replace(bench, reach=STRUCTURE.final_reach)
+    few = replace(bench, reach=STRUCTURE_SEARCH.final_reach)
     few = few.chosen(one_of_each(campaign.hits))
     return few.at(np.zeros(few.base_sd.size), (), few.landing, few.table_floor)

@@ -27,7 +27,7 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.landing import mark_missed
-from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_search.continued_laws import with_continued
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
@@ -57,6 +57,9 @@ from jointbench.analysis.gap.structure_search.structure_search import (
     needless,
     one_effect_takes_much,
     takes,
+)
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
@@ -191,7 +194,7 @@ def test_friction_leaves_masses_as_weighed(found: StructureOutcome) -> None:
     few = found.bench.chosen(one_of_each(found.bench.campaign.hits))
     micro = candidate(found, "microslip")
     x = np.append(np.zeros(few.base_sd.size), [0.3, 0.0, -1.0, 0.5, -0.1])
-    masses = [k for k, sd in enumerate(few.base_sd) if sd < STRUCTURE.weighed_sd]
+    masses = [k for k, sd in enumerate(few.base_sd) if sd < STRUCTURE_SEARCH.weighed_sd]
     assert masses
     x[masses] = 2.0 * few.base_sd[masses]
     plain = minimise(make_problem(few, (micro,)), x, SHORT, iterations=0)
@@ -334,7 +337,7 @@ def test_a_frequency_that_a_descent_cannot_reach_is_found(
     )
     back = sought(made, lost)
     assert back is not None
-    step = 2.0 * np.pi * STRUCTURE.sought_turn / 0.02 / tuned.omega[k]
+    step = 2.0 * np.pi * STRUCTURE_SEARCH.sought_turn / 0.02 / tuned.omega[k]
     assert abs(back[at] - 0.03) < step
     assert sought(made, there) is None
 
@@ -346,7 +349,7 @@ def test_frequencies_are_as_uncertain_as_a_base_that_explains_shows(
     tuned = uncertain.layout.tuned
     assert tuned is not None
     own = [uncertain.layout.at(name) for name in tuned.names[: tuned.omega.size]]
-    free = [k for k in own if uncertain.base_sd[k] > STRUCTURE.open_frequency]
+    free = [k for k in own if uncertain.base_sd[k] > MODAL_TABLE.open_frequency]
     x = np.zeros(uncertain.base_sd.size)
     x[free] = 0.1 * uncertain.base_sd[free]
     x[free[-1]] = 5.0 * uncertain.base_sd[free[-1]]
@@ -357,7 +360,7 @@ def test_frequencies_are_as_uncertain_as_a_base_that_explains_shows(
     )
     np.testing.assert_allclose(left, 1.0)
     rms = np.sqrt((25.0 + 0.01 * (len(free) - 1)) / len(free))
-    np.testing.assert_allclose(raised[own], min(rms, STRUCTURE.largest_size))
+    np.testing.assert_allclose(raised[own], min(rms, MODAL_TABLE.largest_size))
 
 
 def test_with_an_uncertain_table_the_base_is_fitted_from_any_effect(
@@ -367,7 +370,7 @@ def test_with_an_uncertain_table_the_base_is_fitted_from_any_effect(
     heavy = next(c for c in uncertain.candidates if c.effect.name == "added_mass")
     start = np.append(np.zeros(uncertain.base_sd.size), 0.1)
     fit = minimise(make_problem(uncertain, (heavy,)), start, iterations=0)
-    assert weakest_amplitude(fit) > STRUCTURE.plain_amplitude
+    assert weakest_amplitude(fit) > STRUCTURE_SEARCH.plain_amplitude
     best = JudgedFit(uncertain, fit, accept_structure(uncertain, fit, fit))
     after = needless(best, UNTESTED)
     assert after is not None
@@ -424,7 +427,7 @@ def test_a_fit_of_an_effect_seeks_the_frequency_it_has_lost(
     hits = replace(uncertain.campaign.hits, response=response)
     nominal = replace(uncertain.campaign.nominal, table_sd=(0.02, 0.02))
     campaign = replace(uncertain.campaign, hits=hits, nominal=nominal)
-    made = replace(make_structure_bench(campaign), reach=STRUCTURE.final_reach)
+    made = replace(make_structure_bench(campaign), reach=STRUCTURE_SEARCH.final_reach)
     start = np.concatenate([np.zeros(off.size), [0.3]])
     made = made.at(start[:-1], (), made.landing, made.table_floor)
     lost = minimise(make_problem(made, (gain,)), start, FULL, iterations=0)
