@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Significance of the effects of a fit, and shape parameters at a limit."""
+"""Significance of the effects of a fit, its base without them, shapes at a limit."""
 
 from collections.abc import Sequence
 
@@ -17,8 +17,8 @@ def at_the_end(fit: Fit, policy: Policy = STANDARD) -> str:
     Such a law imitates another one: a Bouc-Wen element with a very sharp corner is a
     Jenkins slider.
     """
-    sd, at = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)), fit.n_base
-    for term in fit.terms:
+    sd = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    for at, term in zip(_amplitudes(fit), fit.terms, strict=True):
         for k, p in enumerate(term.candidate.effect.parameters):
             low, high = p.bounds
             span, u = high - low, term.coordinates[k]
@@ -26,7 +26,6 @@ def at_the_end(fit: Fit, policy: Policy = STANDARD) -> str:
             if k and known and np.isfinite(span):
                 if min(u - low, high - u) < policy.shape_end_share * span:
                     return f"{p.name} of {term.candidate.label} is at its limit"
-        at += len(term.coordinates)
     return ""
 
 

@@ -17,6 +17,7 @@ from jointbench.analysis.gap.search.screening import Screening, screen, start_gr
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.continued_laws import with_continued
+from jointbench.analysis.gap.structure_search.structure_fits import chi2_per_dof
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )
@@ -156,10 +157,7 @@ def _strong(
     Directed tests mislead about a stiff spring or a large mass at a point, which has
     the most sites; laws and effects that are always tried are left out.
     """
-    if (
-        near.chi2 * few.coherence
-        < STRUCTURE_SEARCH.explaining_chi2 * near.residual.size
-    ):
+    if chi2_per_dof(few, near) < STRUCTURE_SEARCH.explaining_chi2:
         return []
     reached = []
     for c in others:
