@@ -45,19 +45,22 @@ def screen_app(parts: Sequence[ScreenPart], access: ScreenAccess) -> "ASGIApp":
     routes: list[BaseRoute] = [
         *(route for part in parts for route in part.routes),
         Route("/", first),
-        *(_page(page, pages) for page in pages),
+        *(_page(page, pages, access) for page in pages),
         *(_asset(asset) for asset in screen_assets()),
     ]
     return ScreenGuard(Starlette(routes=routes, lifespan=running), access)
 
 
-def _page(page: ScreenPage, pages: Sequence[ScreenPage]) -> "Route":
+def _page(
+    page: ScreenPage, pages: Sequence[ScreenPage], access: ScreenAccess
+) -> "Route":
     from starlette.responses import HTMLResponse
     from starlette.routing import Route
 
     html = page_shell(page, pages)
 
     async def show(request: "Request") -> "Response":
+        access.page_sent()
         return HTMLResponse(html)
 
     return Route(page.path, show)

@@ -18,6 +18,7 @@ from jointbench.station.browser.app.serve_screen import screen_server
 from jointbench.station.browser.bench.bench_routes import bench_part
 from jointbench.station.browser.bench.desk_after_session import DeskAfterSession
 from jointbench.station.browser.bench.screen_link import (
+    PageSent,
     Relinked,
     Serving,
     SessionFinished,
@@ -66,6 +67,7 @@ def run_bench_server(
         serving.port, token=serving.token, admission=serving.admission
     )
     access.relinked = lambda token: tell(Relinked(token))
+    access.page_sent = lambda: tell(PageSent())
     server = screen_server(parts, access)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()

@@ -80,6 +80,11 @@ class Relinked:
 
 
 @dataclass(frozen=True, slots=True)
+class PageSent:
+    """From the server: a browser was sent a page, whose screen opens a moment later."""
+
+
+@dataclass(frozen=True, slots=True)
 class Watched:
     """From the server: how many screens are open.
 

@@ -18,6 +18,7 @@ from jointbench.acquisition.basics.errors import FormatError
 from jointbench.station.browser.app.serve_screen import loopback_socket
 from jointbench.station.browser.bench.bench_server import run_bench_server
 from jointbench.station.browser.bench.screen_link import (
+    PageSent,
     Relinked,
     Serving,
     SessionFinished,
@@ -36,7 +37,7 @@ _MOST_BRIEF = 3
 _UNWATCHED = 10.0
 """Without an open screen after which a finished session is left [s]."""
 _OPENING = 60.0
-"""After its link was used, or its server died, in which a screen is awaited [s]."""
+"""After a link was used, a page sent or a server lost, a screen is awaited [s]."""
 _LOOK = 0.2  # [s]
 _LAST_WORD = 5.0  # [s]
 
@@ -166,6 +167,8 @@ class ScreenProcess:
     def _take(self, link: Connection, news: object) -> None:
         if isinstance(news, Watched):
             self._watch(news.count)
+        elif isinstance(news, PageSent):
+            self._opening_until = time.monotonic() + _OPENING
         elif isinstance(news, Relinked):
             self._opening_until = time.monotonic() + _OPENING
             self.access.token = news.token

@@ -26,6 +26,7 @@ class ScreenAccess:
         token: secret of the next link.
         admission: secret of the cookie.
         relinked: takes each new token.
+        page_sent: called for each page, which opens its socket a moment later.
     """
 
     def __init__(
@@ -42,6 +43,7 @@ class ScreenAccess:
         self.token = token or new_secret()
         self.admission = admission or new_secret()
         self.relinked: Callable[[str], None] = lambda token: None
+        self.page_sent: Callable[[], None] = lambda: None
 
     @property
     def cookie(self) -> str:

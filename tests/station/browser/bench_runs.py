@@ -127,6 +127,9 @@ def bench(folder: Path, *options: str) -> Iterator[Bench]:
         )
     try:
         yield Bench(log, process, folder / "s.h5")
+    except Exception as error:
+        error.add_note(f"exit code {process.poll()}, printed: {log.read_text()}")
+        raise
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
@@ -151,8 +154,20 @@ def opened(chromium: "Browser", link: str) -> Iterator["Page"]:
         page.on("pageerror", lambda error: foreign.append(str(error)))
         page.on("dialog", lambda dialog: foreign.append(dialog.message))
         page.goto(link)
-        yield page
+        try:
+            yield page
+        except Exception as error:
+            error.add_note(seen(page, foreign))
+            raise
         assert not foreign
+
+
+def seen(page: "Page", foreign: list[str]) -> str:
+    """Return what a page showed when a test ended, for its failure."""
+    with suppress(Exception):  # the browser may be gone
+        text = page.locator("body").inner_text(timeout=5_000)
+        return f"{page.url} showed: {text}\noutside of it: {foreign}"
+    return "the page does not answer"
 
 
 def legible(page: "Page") -> None:
