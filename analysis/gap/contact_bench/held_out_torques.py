@@ -11,6 +11,7 @@ from jointbench.analysis.gap.contact_bench.contact_settings import CONTACT
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.slopes import curvature
 from jointbench.analysis.gap.search.descent import jacobian_of, minimise
 
 
@@ -109,7 +110,7 @@ def _predict(
         problem = make_problem(others, fit.candidates)
         found = minimise(problem, fit.x, FULL, iterations=CONTACT.descent_steps)
         x = found.x
-        hessian = found.jacobian.T @ found.jacobian + np.diag(found.prior)
+        hessian = curvature(found.jacobian) + np.diag(found.prior)
     held = bench.plain(own)
     problem = make_problem(held, fit.candidates)
     slopes = jacobian_of(problem, x, problem.residual(x, FULL), FULL)

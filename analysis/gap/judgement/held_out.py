@@ -29,6 +29,12 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
 )
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
+from jointbench.analysis.gap.residuals.slopes import (
+    SlopeArray,
+    along_columns,
+    curvature,
+    linear_change,
+)
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import score
 
@@ -105,7 +111,7 @@ def hold_out_by_steps(fit: Fit, blocks: Blocks) -> HeldOut:
         blocks: groups of its rows.
     """
     condition = conditions_of(blocks)
-    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    hessian = curvature(fit.jacobian) + np.diag(fit.prior)
     chi2, dof = [], []
     share = blocks.dof / fit.residual.size
     for c in range(int(condition.max()) + 1):
@@ -119,21 +125,21 @@ def hold_out_by_steps(fit: Fit, blocks: Blocks) -> HeldOut:
 def _left_out(fit: Fit, hessian: FloatArray, rows: BoolArray) -> FloatArray:
     """Return the residual of rows after the step of a fit without them."""
     j, r = fit.jacobian[rows], fit.residual[rows]
-    step = np.linalg.lstsq(hessian - j.T @ j, j.T @ r, rcond=1e-12)[0]
-    return np.asarray(r + j @ step)
+    step = np.linalg.lstsq(hessian - curvature(j), along_columns(j, r), rcond=1e-12)
+    return r + linear_change(j, np.asarray(step[0], np.float64))
 
 
 def _stepped(fit: Fit, bench: Bench, bare: HeldOut | None) -> HeldOut:
     """Hold out each condition by one step, or by a fit where the step is long."""
     blocks = bench.blocks
     condition = conditions_of(blocks)
-    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    hessian = curvature(fit.jacobian) + np.diag(fit.prior)
     chi2, dof = [], []
     share = blocks.dof / fit.residual.size
     for c in range(int(condition.max()) + 1):
         rows = np.isin(blocks.group, np.flatnonzero(condition == c))
         j, r = fit.jacobian[rows], fit.residual[rows]
-        others = hessian - j.T @ j
+        others = hessian - curvature(j)
         dof.append(share * rows.sum())
         left = _left_out(fit, hessian, rows)
         chi2.append(float(left @ left))
@@ -214,7 +220,7 @@ class _Without(FitProblem):
         seen[self.hidden] = 0.0
         return seen
 
-    def base_slopes(self, x: FloatArray, resolution: Resolution) -> FloatArray | None:
+    def base_slopes(self, x: FloatArray, resolution: Resolution) -> SlopeArray | None:
         """Return the slopes by the base, 0 in the ignored rows; None if unknown."""
         slopes = FitProblem.base_slopes(self, x, resolution)
         if slopes is not None:

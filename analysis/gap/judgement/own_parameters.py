@@ -22,6 +22,7 @@ from jointbench.acquisition.basics.tail_probabilities import chi2_above, gamma_a
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.slopes import squared_norms
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,8 @@ def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
         allowed: chi2 that the model error may contribute.
     """
     shape = bench.blocks.shape
-    slopes = fit.jacobian / np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
+    sizes = np.sqrt(squared_norms(fit.jacobian))
+    slopes = fit.jacobian / np.maximum(sizes, 1e-300)
     cells = _time_cells(slopes, fit.residual, shape)
     bands = _band_cells(slopes, fit.residual, shape)
     tests = [

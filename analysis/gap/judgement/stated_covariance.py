@@ -5,6 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
+from jointbench.analysis.gap.residuals.slopes import along_columns
 
 
 def stated_covariance(fit: Fit, blocks: Blocks) -> FloatArray:
@@ -30,8 +31,9 @@ def stated_covariance(fit: Fit, blocks: Blocks) -> FloatArray:
         return np.asarray(covariance)
     count = fit.residual.size // records
     # By records: the slopes of all of them, reshaped, would be copied.
+    j, r = fit.jacobian, fit.residual
     each = (slice(k * count, (k + 1) * count) for k in range(records))
-    scores = np.stack([fit.residual[own] @ fit.jacobian[own] for own in each])
+    scores = np.stack([along_columns(j[own], r[own]) for own in each])
     scores *= np.sqrt(records / (records - 1))
     spread = scores.T @ scores + np.diag(fit.prior)
     shown = np.diag(inverse @ spread @ inverse)

@@ -17,6 +17,7 @@ from jointbench.analysis.gap.model_error.whitened_bench import WhitenedBench
 from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.slopes import along_columns, curvature
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,12 +45,13 @@ def score_conditions(bench: WhitenedBench, fit: Fit) -> ConditionScores:
     """
     condition = conditions_of(bench.blocks)
     problem = make_problem(bench, fit.candidates)
-    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    hessian = curvature(fit.jacobian) + np.diag(fit.prior)
     rows = fit.residual.copy()
     for g in range(int(condition.max()) + 1):
         own = np.isin(bench.blocks.group, np.flatnonzero(condition == g))
         j, r = fit.jacobian[own], fit.residual[own]
-        step = np.linalg.lstsq(hessian - j.T @ j, j.T @ r, rcond=1e-12)[0]
+        others, push = hessian - curvature(j), along_columns(j, r)
+        step = np.linalg.lstsq(others, push, rcond=1e-12)[0]
         x = np.clip(fit.x + step, problem.lower, problem.upper)
         moved = problem.residual(x, MIDDLE)
         rows[own] = moved[own] if np.isfinite(moved).all() else r

@@ -27,7 +27,7 @@ from jointbench.analysis.gap.next_experiment.ranked_experiment import (
 )
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import jacobian_of
 from jointbench.analysis.gap.search.selection_round import score
 
@@ -104,11 +104,11 @@ def _forecast(
         base[place[name]] = value
     x = np.concatenate([base, fit.x[fit.n_base :]])
     old = make_problem(wider.chosen(~fresh), fit.candidates)
-    slopes = jacobian_of(old, x, old.residual(x, FULL), FULL)
+    slopes = _slopes(old, x)
     known = information_of(slopes) + np.diag(old.prior)
     ahead = wider.plain(fresh)
     new = make_problem(ahead, fit.candidates)
-    slopes = jacobian_of(new, x, new.residual(x, FULL), FULL)
+    slopes = _slopes(new, x)
     spread = forecast_covariance(slopes, known)
     spread += CONTACT.model_sd**2 * np.eye(len(spread))
     mean = ahead.predict(x[: base.size], split(x, base.size, fit.candidates))
@@ -117,6 +117,12 @@ def _forecast(
     if not accepted:
         spread += _discrepancy(bench, wider, fit, fresh)
     return Forecast(score(bench, fit), mean, spread)
+
+
+def _slopes(problem: FitProblem, x: FloatArray) -> FloatArray:
+    """Return the Jacobian at x, shape (n_rows, n)."""
+    found = jacobian_of(problem, x, problem.residual(x, FULL), FULL)
+    return np.asarray(found, dtype=np.float64)
 
 
 def _discrepancy(

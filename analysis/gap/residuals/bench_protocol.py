@@ -13,6 +13,7 @@ from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 
 
@@ -127,7 +128,7 @@ class SlopedBench(Protocol):
 
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
-    ) -> FloatArray:
+    ) -> SlopeArray:
         """Return d residual / d base, shape (n_rows, n_base).
 
         A bench may add columns by the coordinates of the effects, all of them; NaN in

@@ -9,6 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.slopes import SlopeArray, curvature
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +51,7 @@ class Fit:
     n_base: int
     candidates: tuple[Candidate, ...]
     residual: FloatArray
-    jacobian: FloatArray
+    jacobian: SlopeArray
     cost: float
     prior: FloatArray
     centre: FloatArray
@@ -73,7 +74,7 @@ class Fit:
     @property
     def covariance(self) -> FloatArray:
         """Of x by the curvature of the cost, shape (n, n)."""
-        hessian = self.jacobian.T @ self.jacobian + np.diag(self.prior)
+        hessian = curvature(self.jacobian) + np.diag(self.prior)
         return np.asarray(np.linalg.pinv(hessian, hermitian=True))
 
     @property

@@ -11,6 +11,7 @@ from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.bench_protocol import Bench, SlopedBench
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import split
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,7 +44,7 @@ class FitProblem:
         terms = split(x, self.n_base, self.candidates)
         return self.bench.residual(x[: self.n_base], terms, resolution)
 
-    def base_slopes(self, x: FloatArray, resolution: Resolution) -> FloatArray | None:
+    def base_slopes(self, x: FloatArray, resolution: Resolution) -> SlopeArray | None:
         """Return the slopes of the residual by the base, shape (n_rows, n_base).
 
         None if the bench has none of its own. A bench may add columns by the

@@ -10,6 +10,13 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
+from jointbench.analysis.gap.residuals.slopes import (
+    SlopeArray,
+    along_columns,
+    curvature,
+    linear_change,
+    squared_norms,
+)
 from jointbench.analysis.gap.response.threads import each
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
@@ -28,7 +35,7 @@ def jacobian_of(
     x: FloatArray,
     residual: FloatArray,
     resolution: Resolution,
-) -> FloatArray:
+) -> SlopeArray:
     """Return the Jacobian of the residual by differences, shape (n_rows, n).
 
     Args:
@@ -44,9 +51,10 @@ def jacobian_of(
     def difference(i: int) -> None:
         moved = x.copy()
         moved[i] += steps[i]
-        columns[i] = problem.residual(moved, resolution)
-        columns[i] -= residual
-        columns[i] /= steps[i]
+        change = problem.residual(moved, resolution)
+        change -= residual
+        change /= steps[i]
+        columns[i] = change
 
     by_difference = missing[missing < shared]
     each(lambda k: difference(int(by_difference[k])), by_difference.size)
@@ -62,8 +70,8 @@ def jacobian_of(
 
 
 def _with_room(
-    known: FloatArray | None, x: FloatArray, residual: FloatArray
-) -> tuple[FloatArray, IntArray]:
+    known: SlopeArray | None, x: FloatArray, residual: FloatArray
+) -> tuple[SlopeArray, IntArray]:
     """Return columns for all coordinates, and which of them are not known yet.
 
     Args:
@@ -77,7 +85,7 @@ def _with_room(
     if count == x.size:
         columns = known.T
         return columns, np.flatnonzero(np.isnan(columns.sum(axis=1)))
-    columns = np.empty((x.size, residual.size))
+    columns = np.empty((x.size, residual.size), dtype=known.dtype)
     columns[:count] = known.T
     return columns, np.arange(count, x.size)
 
@@ -115,7 +123,7 @@ class Descent:
     dof: float | None = None
     sparing: bool = False
 
-    def slopes(self, problem: FitProblem, x: FloatArray, r: FloatArray) -> FloatArray:
+    def slopes(self, problem: FitProblem, x: FloatArray, r: FloatArray) -> SlopeArray:
         """Return the Jacobian at x, where the residual is r, shape (n_rows, n)."""
         if self.jacobian_resolution is None:
             return jacobian_of(problem, x, r, self.resolution)
@@ -253,19 +261,19 @@ class _Neighbourhood:
         problem: FitProblem,
         x: FloatArray,
         r: FloatArray,
-        j: FloatArray,
+        j: SlopeArray,
         cost: float,
         least: float,
     ) -> None:
         self.problem, self.x, self.j = problem, x, j
         self.cost, self.least = cost, least
-        self.hessian = j.T @ j + np.diag(problem.prior)
+        self.hessian = curvature(j) + np.diag(problem.prior)
         self.gradient = self.gradient_with(x, r)
 
     def gradient_with(self, x: FloatArray, r: FloatArray) -> FloatArray:
         """Return the gradient of half the cost at x, with the slopes known here."""
         off = x - self.problem.centre
-        return np.asarray(self.j.T @ r + self.problem.prior * off)
+        return along_columns(self.j, r) + self.problem.prior * off
 
     def predicted_drop(self, moved: FloatArray) -> float:
         """Return the drop of the cost predicted by the linear model."""
@@ -273,15 +281,15 @@ class _Neighbourhood:
         return -float(step @ (2.0 * self.gradient + self.hessian @ step))
 
 
-def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
+def _secant(j: SlopeArray, change: FloatArray, difference: FloatArray) -> SlopeArray:
     """Update slopes in place from the residuals of a step, without an evaluation.
 
     Source:
         Broyden 1965, Math. Comp. 19, 577, eq. (4.5), with parameters scaled by the
         norm of their columns.
     """
-    along = np.einsum("ij,ij->j", j, j) * change
-    left, weights = difference - j @ change, along / (change @ along)
+    along = squared_norms(j) * change
+    left, weights = difference - linear_change(j, change), along / (change @ along)
     moved = j if j.flags.writeable else j.copy()
     # Column by column: a second set of slopes would double the memory.
     for column, weight in zip(moved.T, weights, strict=True):

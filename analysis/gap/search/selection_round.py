@@ -16,6 +16,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
+from jointbench.analysis.gap.residuals.slopes import along_columns, curvature
 from jointbench.analysis.gap.search.candidate_starts import (
     MOST_STEPS,
     CandidateFit,
@@ -277,12 +278,12 @@ def _swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     tail = np.array([SEARCH.exchange_probe])
     moved = bench.residual(fit.base, (*fit.terms, Term(candidate, tail)), MIDDLE)
     d = (moved - plain) / SEARCH.exchange_probe
-    hessian = fit.jacobian.T @ fit.jacobian + 1e-6 * np.diag(fit.prior)
+    hessian = curvature(fit.jacobian) + 1e-6 * np.diag(fit.prior)
     # A parameter that changes no record, of an effect beyond its threshold, stays.
     alive = np.diag(hessian) > 0.0
     way = np.zeros_like(fit.x)
     way[alive] = -np.linalg.solve(
-        hessian[np.ix_(alive, alive)], (fit.jacobian.T @ d)[alive]
+        hessian[np.ix_(alive, alive)], along_columns(fit.jacobian, d)[alive]
     )
     off = fit.x - fit.centre
     amplitude = -float(off @ (fit.prior * way)) / float(way @ (fit.prior * way))

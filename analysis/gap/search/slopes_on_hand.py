@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Slopes that one fit leaves to the next."""
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 
 
 class SlopesOnHand:
@@ -10,10 +10,10 @@ class SlopesOnHand:
     They are the largest array of a fit, and are dropped when others take their place.
     """
 
-    def __init__(self, slopes: FloatArray) -> None:
+    def __init__(self, slopes: SlopeArray) -> None:
         """Hold the slopes, shape (n_rows, n)."""
-        self._held: list[FloatArray] = [slopes]
+        self._held: list[SlopeArray] = [slopes]
 
-    def taken(self) -> FloatArray:
+    def taken(self) -> SlopeArray:
         """Return the slopes and forget them."""
         return self._held.pop()

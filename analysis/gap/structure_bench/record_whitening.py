@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 from jointbench.analysis.gap.structure_bench.table_whitening import (
     TableWhitening,
     point_whitening,
@@ -71,14 +72,14 @@ class RecordWhitening:
         self.in_place(scaled)
         return np.asarray(scaled)
 
-    def in_place(self, rows: FloatArray) -> None:
+    def in_place(self, rows: SlopeArray) -> None:
         """Whiten rows over sigma in place, (n_records, n, n_channels, n_samples)."""
-        self._steadied(rows)
+        self._steady(rows)
         if self.directions is None:
             return
         count = rows.shape[3]
         # A view: channels and samples follow each other.
-        self._white(count)(_flat(rows))
+        self._white(count)(rows.reshape(*rows.shape[:2], -1))
         if self.bodies is not None:
             self._of_bodies(self.bodies[..., :count])(rows)
 
@@ -92,13 +93,14 @@ class RecordWhitening:
         Returns:
             Directions, shape (n_records, n_directions).
         """
-        scaled = self._steadied(rows / self.sigma[:, :, None])
+        scaled = rows / self.sigma[:, :, None]
+        self._steady(scaled)
         if self.uncertain:
             return self._of_table(rows.shape[2]).found(scaled)
         known = _flat(self._scaled(rows.shape[2]))
         return directions_found(known, scaled.reshape(len(rows), -1))
 
-    def _steadied(self, rows: FloatArray) -> FloatArray:
+    def _steady(self, rows: SlopeArray) -> None:
         """Whiten rows over sigma for what is left of the hum of channels, in place.
 
         What is left of it is far below the errors of an uncertain modal table.
@@ -108,12 +110,12 @@ class RecordWhitening:
         """
         hits, count = self.hits, rows.shape[-1]
         if not hits.hum_left.size or self.uncertain:
-            return rows
+            return
         found: HumWhitening = self._kept(
             ("hum_left", count),
             lambda: hum_whitening(hits.hum_left[:, :count], hits.noise / self.sigma),
         )
-        return found(rows)
+        found(rows)
 
     def _white(self, count: int) -> HitWhitening | TableWhitening:
         """Return the whitening of records of so many samples."""
@@ -167,7 +169,8 @@ class RecordWhitening:
         if self.directions is None:
             raise ValueError("directions are not known yet")
         rows = self.directions[..., :count] / self.sigma[:, None, :, None]
-        return self._steadied(rows)
+        self._steady(rows)
+        return rows
 
     def _kept(self, key: tuple[object, ...], make: Callable[[], Any]) -> Any:
         if key not in self.kept:

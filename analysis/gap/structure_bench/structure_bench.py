@@ -20,6 +20,7 @@ from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 from jointbench.analysis.gap.structure_bench.law_slopes import LawSlopes
 from jointbench.analysis.gap.structure_bench.record_whitening import RecordWhitening
 from jointbench.analysis.gap.structure_bench.structure_effects import (
@@ -260,11 +261,12 @@ class StructureBench:
 
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
-    ) -> FloatArray:
+    ) -> SlopeArray:
         """Return the slopes of the residual by the base, shape (n_rows, n).
 
         Columns by the coordinates of the effects follow: if all of these are nonlinear
         laws, with which the linear response does not change, their slopes, else NaN.
+        They are stored in single precision.
         """
         weights = landing_weights(self.landing)
         model = self.model(base, terms, resolution.window)
@@ -277,7 +279,7 @@ class StructureBench:
                 added = laws.by_terms()
         n, records = self.layout.sd.size, len(weights)
         whole = n + sum(t.coordinates.size for t in terms)
-        columns = np.full((whole, records, *model.shape), np.nan)
+        columns = np.full((whole, records, *model.shape), np.nan, np.float32)
         for k, rows in enumerate(model.slopes(weights, self.layout, changes)):
             np.divide(rows, self.sigma[:, :, None], out=columns[k])
         for k, forces in enumerate(added):

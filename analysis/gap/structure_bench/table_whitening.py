@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
@@ -104,17 +105,16 @@ class TableWhitening:
     records: tuple[IntArray, ...]
     points: tuple[PointWhitening, ...]
 
-    def __call__(self, rows: FloatArray) -> FloatArray:
+    def __call__(self, rows: SlopeArray) -> None:
         """Whiten rows of records, shape (n_records, n, n_rows), in place."""
         step = STRUCTURE.columns_at_once
         for own, point in zip(self.records, self.points, strict=True):
             for first in range(0, rows.shape[1], step):
                 some = slice(first, first + step)
-                part = np.ascontiguousarray(rows[own, some])
+                part = np.ascontiguousarray(rows[own, some], dtype=np.float64)
                 block = part.reshape(*part.shape[:2], *point.directions.shape[2:])
                 point.whiten(block)
                 rows[own, some] = part
-        return rows
 
     def found(self, rows: FloatArray) -> FloatArray:
         """Return the most likely directions, shape (n_records, n_directions).

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -26,11 +27,10 @@ class HitWhitening:
     basis: FloatArray
     taken: FloatArray
 
-    def __call__(self, rows: FloatArray) -> FloatArray:
+    def __call__(self, rows: SlopeArray) -> None:
         """Whiten rows of records, shape (n_records, n, n_rows), in place."""
         for row, basis, taken in zip(rows, self.basis, self.taken, strict=True):
             row -= ((row @ basis.T) * taken) @ basis
-        return rows
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,13 +46,10 @@ class HumWhitening:
     basis: FloatArray
     taken: FloatArray
 
-    def __call__(self, rows: FloatArray) -> FloatArray:
+    def __call__(self, rows: SlopeArray) -> None:
         """Whiten rows over sigma in place, (n_records, ..., n_channels, n_samples)."""
-        records, channels, count = self.taken.shape
-        between = (1,) * (rows.ndim - 3)
-        taken = self.taken.reshape(records, *between, channels, count)
-        rows -= ((rows @ self.basis.T) * taken) @ self.basis
-        return rows
+        for row, taken in zip(rows, self.taken, strict=True):
+            row -= ((row @ self.basis.T) * taken) @ self.basis
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,20 +57,21 @@ class CommonWhitening:
     """Inverse root of the covariance of all records together.
 
     Attributes:
-        basis: orthonormal directions, shape (n_directions, n_all_rows).
+        basis: orthonormal directions, shape (n_records, n_directions, n_rows).
         taken: share of each that is removed, shape (n_directions,).
     """
 
     basis: FloatArray
     taken: FloatArray
 
-    def __call__(self, rows: FloatArray) -> FloatArray:
+    def __call__(self, rows: SlopeArray) -> None:
         """Whiten rows in place, (n_records, n, n_channels, n_samples)."""
-        one = _together(rows)
-        one -= ((one @ self.basis.T) * self.taken) @ self.basis
-        records, count, channels, length = rows.shape
-        rows[:] = one.reshape(count, records, channels, length).transpose(1, 0, 2, 3)
-        return rows
+        flat = rows.reshape(*rows.shape[:2], -1)
+        pairs = tuple(zip(flat, self.basis, strict=True))
+        along = np.sum([row @ basis.T for row, basis in pairs], axis=0) * self.taken
+        # Record by record: of all together, rows would be copied.
+        for row, basis in pairs:
+            row -= along @ basis
 
 
 def common_whitening(scaled: FloatArray) -> CommonWhitening:
@@ -81,19 +79,17 @@ def common_whitening(scaled: FloatArray) -> CommonWhitening:
 
     Args:
         scaled: derivatives by directions of unit sd, white otherwise, shape
-            (n_records, n_directions, n_channels, n_samples).
+            (n_records, n_directions, n_channels, n_samples); the basis takes its
+            place.
     """
-    flat = _together(scaled)
-    values, vectors = np.linalg.eigh(flat @ flat.T)
+    flat = scaled.reshape(*scaled.shape[:2], -1)
+    values, vectors = np.linalg.eigh(np.sum([one @ one.T for one in flat], axis=0))
     kept = values > STRUCTURE.least_variance
     values, vectors = values[kept], vectors[:, kept]
-    basis = (vectors / np.sqrt(values)).T @ flat
+    basis = flat[:, : values.size]
+    for one, found in zip(flat, basis, strict=True):
+        found[:] = (vectors / np.sqrt(values)).T @ one
     return CommonWhitening(basis, 1.0 - 1.0 / np.sqrt(1.0 + values))
-
-
-def _together(rows: FloatArray) -> FloatArray:
-    """Return rows of all records as one, (n_records, n, ...) to (n, n_all_rows)."""
-    return rows.swapaxes(0, 1).reshape(rows.shape[1], -1)
 
 
 def hum_whitening(hum: FloatArray, noise: FloatArray) -> HumWhitening:

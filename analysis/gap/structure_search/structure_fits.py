@@ -236,6 +236,7 @@ def settled(
         near = near_records(bench, fit)
         if near:
             landing, _ = bench.landed(fit.base, fit.terms)
+        bench = bench.at_rest()  # or it keeps its whitening beside the next one
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
         fit = _whole(bench, fit.x, candidates, given, exact=near and given is None)
         least = (

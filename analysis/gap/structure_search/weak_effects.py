@@ -18,6 +18,7 @@ from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.slopes import along_columns, linear_change
 from jointbench.analysis.gap.search.candidate_starts import along
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
@@ -221,7 +222,8 @@ def completed(fit: Fit) -> Fit:
     Args:
         fit: with its slopes.
     """
-    gradient = fit.jacobian.T @ fit.residual + fit.prior * (fit.x - fit.centre)
+    gradient = along_columns(fit.jacobian, fit.residual)
+    gradient += fit.prior * (fit.x - fit.centre)
     step = -fit.covariance @ gradient
     longest = SEARCH.longest_step
     x = fit.x.copy()
@@ -229,7 +231,7 @@ def completed(fit: Fit) -> Fit:
     return replace(
         fit,
         x=x,
-        residual=fit.residual + fit.jacobian @ step,
+        residual=fit.residual + linear_change(fit.jacobian, step),
         cost=fit.cost + float(gradient @ step),
     )
 
