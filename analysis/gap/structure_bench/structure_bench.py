@@ -279,12 +279,13 @@ class StructureBench:
                 added = laws.by_terms()
         n, records = self.layout.sd.size, len(weights)
         whole = n + sum(t.coordinates.size for t in terms)
-        columns = np.full((whole, records, *model.shape), np.nan, np.float32)
+        columns = np.empty((whole, records, *model.shape), np.float32)
         for k, rows in enumerate(model.slopes(weights, self.layout, changes)):
             np.divide(rows, self.sigma[:, :, None], out=columns[k])
         for k, forces in enumerate(added):
             columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
         known = columns[: n + len(added)]
+        columns[len(known) :] = np.nan
         self.whitening.in_place(known.transpose(1, 0, 2, 3))
         return columns.reshape(len(columns), -1).T
 

@@ -163,7 +163,8 @@ class HitModel:
             # Lines last: the transforms are along them.
             lines = np.ascontiguousarray(columns.transpose(1, 2, 0))
             lines *= channels
-            moved = weights[records[own]].astype(np.complex128) @ lines
+            # Weights are real: two real products are half of a complex one.
+            moved = (weights[records[own]] @ lines.view(np.float64)).view(np.complex128)
             moved *= self.frame.force[records[own]]
             found[own] = self.frame.records(moved).transpose(1, 0, 2)
         return found

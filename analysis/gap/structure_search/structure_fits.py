@@ -27,6 +27,7 @@ from jointbench.analysis.gap.search.descent import (
     descend,
     minimise,
 )
+from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
@@ -218,6 +219,7 @@ def settled(
     candidates: Sequence[Candidate],
     *,
     near: bool,
+    rival: float = np.inf,
 ) -> tuple[StructureBench, Fit]:
     """Fit all whole records, in turn with where each hit landed.
 
@@ -227,9 +229,11 @@ def settled(
         candidates: effects.
         near: whether the start is near the records: each hit is met where it landed
             before the first step, which would move such a start away again.
+        rival: cost that is to be reached; a fit that would need very many more steps
+            is left where it is.
     """
     bench = _met(bench, start, candidates, near=near)
-    fit = _whole(bench, start, candidates)
+    fit = _whole(bench, start, candidates, rival=rival)
     for _ in range(STRUCTURE_SEARCH.settling_rounds):
         landing, before = bench.landing, fit.cost
         fit, given = _left_to_next(bench, fit)
@@ -238,7 +242,10 @@ def settled(
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at_rest()  # or it keeps its whitening beside the next one
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        fit = _whole(bench, fit.x, candidates, given, exact=near and given is None)
+        exact = near and given is None
+        fit = _whole(bench, fit.x, candidates, given, exact=exact, rival=rival)
+        if fit.cost - rival > SEARCH.patience * abs(before - fit.cost):
+            break
         least = (
             STRUCTURE_SEARCH.settled_share if near else STRUCTURE_SEARCH.approach_share
         )
@@ -299,11 +306,13 @@ def _whole(
     known: SlopesOnHand | None = None,
     *,
     exact: bool = False,
+    rival: float = np.inf,
 ) -> Fit:
     """Fit whole records, hits as expanded; if exact, with the slopes at the end."""
     how = Descent(
         FULL,
         iterations=STRUCTURE_SEARCH.whole_iterations,
+        rival=None if np.isinf(rival) else rival,
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
         dof=_dof(bench, FULL),

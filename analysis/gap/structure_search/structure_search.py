@@ -348,10 +348,13 @@ def needless(
     if uncertain and cost > STRUCTURE_SEARCH.again_ratio * ended:
         return None
     del fit
-    bench, base = settled(best.bench, start, (), near=True)
-    judged = accept_structure(bench, base, base)
+    rival = np.inf
+    if uncertain and not within_tolerance(best.bench, best.fit):
+        rival = best.fit.cost + STRUCTURE_SEARCH.uncertain_drop
+    bench, base = settled(best.bench, start, (), near=True, rival=rival)
     if bench.uncertain and takes(bench, best.fit, base):
         return None
+    judged = accept_structure(bench, base, base)
     nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
     if not (judged.passed or nothing):
         return None
