@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
-from jointbench.analysis.gap.model.effect import labels_of, words_of
+from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -94,12 +95,45 @@ def in_whole_records(
         done[:1] = [at_rest(one) for one in done[:1]]
         whole = replace(bench, layout=own.layout)
         near_it = near_records(own, fit)
-        whole, found = settled(whole, fit.x, fit.candidates, near=near_it)
-        acceptance = accept_structure(whole, found, base)
-        done.append(JudgedFit(whole.at_rest(), found, acceptance))
-        del whole, found
+        done.append(_settled_and_judged(whole, fit.x, fit.candidates, base, near_it))
+        del whole
         done = best_first(done)
+    done = _beyond_bounds(done, base, progress)
     return [at_rest(one) for one in best_first([*done, *judged])]
+
+
+def _settled_and_judged(
+    bench: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    base: Fit,
+    near: bool,
+) -> JudgedFit:
+    """Fit all records from a start, near it or not, and judge the fit."""
+    whole, fit = settled(bench, start, candidates, near=near)
+    return JudgedFit(whole.at_rest(), fit, accept_structure(whole, fit, base))
+
+
+def _beyond_bounds(
+    done: list[JudgedFit], base: Fit, progress: Progress
+) -> list[JudgedFit]:
+    """Return fits with the law beyond the bound at which the best one ended.
+
+    In windows either law may be the better one; all records decide.
+
+    Args:
+        done: fits to all records, best first.
+        base: fit without effects.
+        progress: receives one line for the fit, if there is one.
+    """
+    start = continued(done[0].bench, done[0].fit) if done else None
+    if start is None:
+        return done
+    candidates, x = start
+    progress(f"{words_of(candidates)} in all records")
+    rest = [at_rest(one) for one in done]
+    further = _settled_and_judged(done[0].bench, x, candidates, base, near=True)
+    return best_first([*rest, further])
 
 
 def _from_other_frequencies(near: Sequence[_Found], progress: Progress) -> list[_Found]:
