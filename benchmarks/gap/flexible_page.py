@@ -235,8 +235,8 @@ def page(runs: Sequence[Json]) -> str:
         ),
         f"| CPU time, median; worst | <= 40 s; 6 min | {np.median(times):.0f} s; "
         f"{max(times):.0f} s |",
-        f"| memory, median; worst | < 3 GB | {np.median(memory) / 1000:.2f} GB; "
-        f"{max(memory) / 1000:.2f} GB |",
+        f"| memory, median; worst | < 3 GB | {np.median(memory) / 1024:.2f} GiB; "
+        f"{max(memory) / 1024:.2f} GiB |",
         "\nCPU times are of one core, in part beside other work, which lengthens them.",
         f"\n## Single effects\n\n| effect | {' | '.join(worlds)} |",
         "|---" * (1 + len(worlds)) + "|",
