@@ -247,8 +247,7 @@ class StructureBench:
         self, base: FloatArray, terms: Sequence[Term], window: float | None
     ) -> FloatArray:
         """Predict the responses, shape (n_records, n_channels, count)."""
-        weights = landing_weights(self.landing)
-        return self.model(base, terms, window).response(weights)
+        return self.model(base, terms, window).response()
 
     def residual(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
@@ -256,7 +255,7 @@ class StructureBench:
         """Return model minus measurement over sigma, whitened, shape (n_rows,)."""
         fine = resolution.oversampling > FULL.oversampling
         model = self.model(base, terms, resolution.window, fine=fine)
-        modelled = model.response(landing_weights(self.landing))
+        modelled = model.response()
         return self.whitening(self.off(modelled)[:, None]).ravel()
 
     def slopes(
@@ -268,7 +267,6 @@ class StructureBench:
         laws, with which the linear response does not change, their slopes, else NaN.
         They are stored in single precision.
         """
-        weights = landing_weights(self.landing)
         model = self.model(base, terms, resolution.window)
         changes: list[ComplexArray] = []
         added: list[ComplexArray] = []
@@ -277,11 +275,10 @@ class StructureBench:
             changes = laws.by_base()
             if self.nonlinear([t.candidate for t in terms], every=True):
                 added = laws.by_terms()
-        n, records = self.layout.sd.size, len(weights)
+        n, records = self.layout.sd.size, len(self.landing)
         whole = n + sum(t.coordinates.size for t in terms)
         columns = np.empty((whole, records, *model.shape), np.float32)
-        for k, rows in enumerate(model.slopes(weights, self.layout, changes)):
-            np.divide(rows, self.sigma[:, :, None], out=columns[k])
+        model.write_slopes(self.layout, changes, self.sigma, columns)
         for k, forces in enumerate(added):
             columns[n + k] = model.pushed(forces) / self.sigma[:, :, None]
         known = columns[: n + len(added)]

@@ -15,11 +15,6 @@ from jointbench.analysis.gap.structure_response.joint_state import Attached, Joi
 from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 
 
-def solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Solve the systems of all lines."""
-    return np.asarray(np.linalg.solve(matrix, right), dtype=np.complex128)
-
-
 def ends_with_added(
     bodies: JointedBodies, state: JointState, columns: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
@@ -46,7 +41,7 @@ def with_added(
     """
     if not added_rows(bodies, state):
         return response
-    force = forces_by_column(bodies, state, s, response)
+    force = _forces_by_column(bodies, state, s, response)
     count = force.shape[1]
     inside = response[:, :-count, :-count]
     return np.asarray(inside - response[:, :-count, -count:] @ force)
@@ -56,6 +51,23 @@ def added_rows(bodies: JointedBodies, state: JointState) -> list[FloatArray]:
     """Return the rows of attached things and of tuned modes, (n, n_modes) each."""
     tuned = () if state.tuned is None else (state.tuned.rows,)
     return [*(a.rows(bodies) for a in state.attached), *tuned]
+
+
+def attached_stiffness(
+    bodies: JointedBodies, state: JointState, s: ComplexArray
+) -> ComplexArray:
+    """Return the stiffness of attached things by row [N/m], shape (n_lines, n).
+
+    Args:
+        bodies: places and rows.
+        state: with what is attached.
+        s: Laplace variable, shape (n_lines,).
+    """
+    found = [
+        np.repeat(_stiffness_of(one, s)[:, None], len(one.rows(bodies)), axis=1)
+        for one in state.attached
+    ]
+    return np.concatenate([np.zeros((s.size, 0), complex), *found], axis=1)
 
 
 def _added_forces(
@@ -70,17 +82,15 @@ def _added_forces(
         motion: of the rows, shape (n_lines, n, n_columns).
     """
     found = motion.copy()
-    at = 0
-    for one in state.attached:
-        own = slice(at, at + len(one.rows(bodies)))
-        found[:, own] *= _stiffness_of(one, s)[:, None, None]
-        at = own.stop
+    attached = attached_stiffness(bodies, state, s)
+    count = attached.shape[1]
+    found[:, :count] *= attached[:, :, None]
     if state.tuned is not None:
-        found[:, at:] = state.tuned.stiffness @ motion[:, at:]
+        found[:, count:] = state.tuned.stiffness @ motion[:, count:]
     return found
 
 
-def forces_by_column(
+def _forces_by_column(
     bodies: JointedBodies, state: JointState, s: ComplexArray, h: ComplexArray
 ) -> ComplexArray:
     """Return the forces of what is added to the bodies per unit of each column.
@@ -96,7 +106,8 @@ def forces_by_column(
     count = sum(len(rows) for rows in added_rows(bodies, state))
     forces = _added_forces(bodies, state, s, h[:, -count:])
     inner = np.eye(count) + forces[:, :, -count:]
-    return solved(inner, forces[:, :, :-count])
+    found = np.linalg.solve(inner, forces[:, :, :-count])
+    return np.asarray(found, dtype=np.complex128)
 
 
 def _stiffness_of(attached: Attached, s: ComplexArray) -> ComplexArray:

@@ -17,11 +17,11 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.structure_response.closed_response import close
-from jointbench.analysis.gap.structure_response.hit_response import HitModel
-from jointbench.analysis.gap.structure_response.landing import (
-    landing_weights,
-    point_columns,
+from jointbench.analysis.gap.structure_response.hit_response import (
+    HitModel,
+    struck_columns,
 )
+from jointbench.analysis.gap.structure_response.landing import landing_weights
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_response.table_errors import stiffness_errors
 
@@ -40,10 +40,9 @@ def responses_to_body_errors(model: HitModel, landing: FloatArray) -> FloatArray
     rows = model.state.sensors_of(bodies)
     each = np.eye(bodies.omega.size)
     state = replace(model.state, sensors=each)
-    flexibility = close(bodies, state, model.frame.s, each).response
-    struck = np.stack([point_columns(p) for p in model.state.points_of(bodies)])
-    struck = struck[model.campaign.hits.point]
-    columns = np.einsum("rc,rcn->rn", landing_weights(landing), struck)
+    flexibility = close(bodies, state, model.frame.s, each)
+    weights = landing_weights(landing)
+    columns = struck_columns(model.campaign, model.state, weights)
     left = (rows @ flexibility) * model.transfers()[:, :, None]
     right = np.einsum("lnm,rm->rln", flexibility, columns)
     right *= model.frame.force[:, :, None]

@@ -81,7 +81,7 @@ def closed_flexibility(
         return None
     each = np.eye(bodies.omega.size)
     bare = replace(state, sensors=each, attached=())
-    return ClosedFlexibility(state, s, close(bodies, bare, s, each).response)
+    return ClosedFlexibility(state, s, close(bodies, bare, s, each))
 
 
 def _numbers(value: Any) -> tuple[Any, Any]:

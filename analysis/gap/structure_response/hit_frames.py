@@ -32,9 +32,21 @@ class HitFrame:
 
     def records(self, spectrum: ComplexArray) -> FloatArray:
         """Return records from their transforms, shape (..., count)."""
-        values = scipy.fft.irfft(spectrum, self.size, axis=-1)[..., : self.count]
+        values = self.damped(spectrum)[..., : self.count]
         values *= self.growth[: self.count]
         return np.asarray(values)
+
+    def damped(self, spectrum: ComplexArray) -> FloatArray:
+        """Return records as they are on the damped line, shape (..., size)."""
+        return np.asarray(scipy.fft.irfft(spectrum, self.size, axis=-1))
+
+    def empty_spectrum(self, shape: tuple[int, ...]) -> ComplexArray:
+        """Return zeros with the lines of a whole transform, shape (*shape, n).
+
+        Args:
+            shape: of the records and channels.
+        """
+        return np.zeros((*shape, self.size // 2 + 1), dtype=np.complex128)
 
     def transform(self, values: FloatArray) -> ComplexArray:
         """Return the transforms of records, shape (..., n_lines).

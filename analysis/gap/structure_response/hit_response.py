@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Responses to hits: closures by torque, force columns, and forces of laws at ports."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.residuals.slopes import SlopeArray
 from jointbench.analysis.gap.structure_response.acting_laws import acting_laws
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.closed_flexibility import (
@@ -14,46 +15,53 @@ from jointbench.analysis.gap.structure_response.closed_flexibility import (
 )
 from jointbench.analysis.gap.structure_response.closed_modes import closed_modes
 from jointbench.analysis.gap.structure_response.closed_response import (
-    Closure,
     close,
-    response_slopes,
 )
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.hit_frames import HitFrame
 from jointbench.analysis.gap.structure_response.joint_state import JointState
-from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
 from jointbench.analysis.gap.structure_response.landing import (
     COLUMNS,
     landing_slopes,
     landing_weights,
     point_columns,
 )
+from jointbench.analysis.gap.structure_response.line_forces import write_over
 from jointbench.analysis.gap.structure_response.port_integration import (
     averaging,
     integrate_laws,
 )
 from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LAWS
 from jointbench.analysis.gap.structure_response.port_laws import LawForm, law_ports
+from jointbench.analysis.gap.structure_response.response_slopes import (
+    ClosedAt,
+    HitForces,
+    record_slopes,
+)
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TorqueClosure:
-    """The closed response at one torque, with its state and the records made at it.
+    """The closed response at one torque, with the records made at it.
 
     Attributes:
         torque: factor on stiffness and damping of the bolts [-].
         state: at that torque.
         records: made at it.
-        response: displacement per force [m/N], shape (n_lines, n_rows, n_columns).
-        closure: of which it is; None where it is that of a closed flexibility.
+        columns: distinct force columns of these records in modes, shape
+            (n_columns, n_modes).
+        column_of: column of each of them, shape (n_own_records,).
+        response: displacement per force [m/N] by these columns, then by the ports of
+            laws, shape (n_lines, n_rows, n_columns + n_ports).
     """
 
     torque: float
     state: JointState
     records: IntArray
+    columns: FloatArray
+    column_of: IntArray
     response: ComplexArray
-    closure: Closure | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +72,7 @@ class HitModel:
         campaign: hits, modes and nominal parameters.
         state: of the model.
         frame: transforms of the window.
-        columns: force rows in modes, shape (n_columns, n_modes).
+        ports: rows of the ports of laws in modes, shape (n_ports, n_modes).
         closures: by torque.
         forces: of the laws at the ports, transformed, shape
             (n_records, n_ports, n_lines); None without laws.
@@ -73,7 +81,7 @@ class HitModel:
     campaign: HitCampaign
     state: JointState
     frame: HitFrame
-    columns: FloatArray
+    ports: FloatArray
     closures: tuple[TorqueClosure, ...]
     forces: ComplexArray | None
 
@@ -82,23 +90,13 @@ class HitModel:
         """Channels and samples of a record."""
         return len(self.campaign.bodies.channels), self.frame.count
 
-    def struck(self, weights: FloatArray) -> FloatArray:
-        """Return the linear response to weights of the force columns.
+    def struck(self) -> FloatArray:
+        """Return the response to the hammer alone, shape (n_records, *shape)."""
+        return self._records(None)
 
-        Args:
-            weights: of the columns of each record's point, shape (n_records, 9).
-        """
-        rows = np.empty((len(weights), *self.shape))
-        for one in self.closures:
-            rows[one.records] = self._struck(one.response, one.records, weights)
-        return rows
-
-    def response(self, weights: FloatArray) -> FloatArray:
+    def response(self) -> FloatArray:
         """Return the response with the forces of the laws at the ports."""
-        rows = self.struck(weights)
-        if self.forces is not None:
-            rows += self.pushed(self.forces)
-        return rows
+        return self._records(self.forces)
 
     def pushed(self, forces: ComplexArray) -> FloatArray:
         """Return the response to forces across the ports.
@@ -108,72 +106,81 @@ class HitModel:
         """
         rows = np.empty((len(forces), *self.shape))
         for one in self.closures:
-            own = forces[one.records]
-            rows[one.records] = self._pushed(one.response, own)
+            spectrum = self._pushed(one, forces)
+            rows[one.records] = self.frame.records(spectrum)
         return rows
 
-    def slopes(
+    def write_slopes(
         self,
-        weights: FloatArray,
         layout: BaseLayout,
-        changes: Sequence[ComplexArray] = (),
-    ) -> Iterator[FloatArray]:
-        """Yield the slopes by each base coordinate, shape (n_records, *shape).
+        changes: Sequence[ComplexArray],
+        sigma: FloatArray,
+        found: SlopeArray,
+    ) -> None:
+        """Write the slopes of all records by each base coordinate, over their sd.
 
         Args:
-            weights: of the columns of each record's point, shape (n_records, 9).
             layout: base coordinates.
-            changes: slopes of the forces of the laws by each coordinate.
+            changes: slopes of the forces of the laws by each coordinate; none without.
+            sigma: of each record and channel [m/s^2], shape (n_records, n_channels).
+            found: shape (n_base, n_records, *shape).
         """
-        bodies = self.state.bodies_of(self.campaign.bodies)
+        frame, bodies = self.frame, self.state.bodies_of(self.campaign.bodies)
+        transfers = self.transfers()
         slopes = [
-            response_slopes(self._closed(one), bodies, one.state, layout)
+            record_slopes(
+                ClosedAt(bodies, one.state, frame.s, one.torque),
+                self._forces_of(one),
+                transfers,
+                layout,
+            )
             for one in self.closures
         ]
+        spectrum = frame.empty_spectrum((len(frame.force), self.shape[0]))
         for k, name in enumerate(layout.names):
-            rows = np.empty((len(weights), *self.shape))
             for one, own in zip(self.closures, slopes, strict=True):
-                slope = own[name]()
-                found = self._struck(slope, one.records, weights)
-                if self.forces is not None:
-                    found += self._pushed(slope, self.forces[one.records])
+                own.write(name, one.records, spectrum)
                 if changes:
-                    moved = changes[k][one.records]
-                    found += self._pushed(one.response, moved)
-                rows[one.records] = found
-            yield rows
+                    spectrum[one.records, :, : frame.s.size] += self._pushed(
+                        one, changes[k]
+                    )
+            write_over(frame.damped(spectrum), frame.growth, sigma, found[k])
 
-    def _closed(self, one: TorqueClosure) -> Closure:
-        """Return the closure at a torque, which slopes need."""
-        if one.closure is not None:
-            return one.closure
-        bodies = self.state.bodies_of(self.campaign.bodies)
-        return close(bodies, one.state, self.frame.s, self.columns, one.torque)
+    def _forces_of(self, one: TorqueClosure) -> HitForces:
+        """Return the forces of the records of a closure."""
+        force = self.frame.force[one.records]
+        laws = None if self.forces is None else self.forces[one.records]
+        return HitForces(one.columns, one.column_of, force, self.ports, laws)
 
-    def _struck(
-        self, response: ComplexArray, records: IntArray, weights: FloatArray
-    ) -> FloatArray:
-        """Return records of a response between sensors and columns."""
-        points = self.campaign.hits.point[records]
-        found = np.empty((len(records), *self.shape))
-        channels = self.transfers().T[:, None]
-        for point in np.unique(points):
-            own = np.flatnonzero(points == point)
-            columns = response[:, :, point * COLUMNS : (point + 1) * COLUMNS]
+    def _records(self, forces: ComplexArray | None) -> FloatArray:
+        """Return the records of all hits, with forces across the ports or without."""
+        rows = np.empty((len(self.frame.force), *self.shape))
+        channels = self.transfers().T
+        for one in self.closures:
+            own = one.response[:, :, : len(one.columns)]
             # Lines last: the transforms are along them.
-            lines = np.ascontiguousarray(columns.transpose(1, 2, 0))
+            lines = np.ascontiguousarray(own.transpose(2, 1, 0))
             lines *= channels
-            # Weights are real: two real products are half of a complex one.
-            moved = (weights[records[own]] @ lines.view(np.float64)).view(np.complex128)
-            moved *= self.frame.force[records[own]]
-            found[own] = self.frame.records(moved).transpose(1, 0, 2)
-        return found
+            spectrum = lines[one.column_of]
+            spectrum *= self.frame.force[one.records][:, None]
+            if forces is not None:
+                spectrum += self._pushed(one, forces)
+            rows[one.records] = self.frame.records(spectrum)
+        return rows
 
-    def _pushed(self, response: ComplexArray, forces: ComplexArray) -> FloatArray:
-        """Return records of forces across the ports, whose columns are the last."""
-        ports = response[:, :, -forces.shape[1] :] * self.transfers()[:, :, None]
-        spectrum = -np.einsum("lcp,rpl->rcl", ports, forces, optimize=True)
-        return self.frame.records(spectrum)
+    def _pushed(self, one: TorqueClosure, forces: ComplexArray) -> ComplexArray:
+        """Return transforms of the response to forces across the ports.
+
+        Args:
+            one: closure.
+            forces: transformed, of all records, shape (n_records, n_ports, n_lines).
+
+        Returns:
+            Of its records, shape (n_own_records, n_channels, n_lines).
+        """
+        ports = one.response[:, :, len(one.columns) :] * self.transfers()[:, :, None]
+        own = forces[one.records]
+        return np.asarray(-np.einsum("lcp,rpl->rcl", ports, own, optimize=True))
 
     def transfers(self) -> ComplexArray:
         """Return the transfers from displacement to channels, (n_lines, n_channels)."""
@@ -199,7 +206,7 @@ def direction_rows(model: HitModel, landing: FloatArray, sd: FloatArray) -> Floa
         For directions of unit sd, shape (n_records, 5, n_channels, count).
     """
     slopes = landing_slopes(landing) * sd[:, None]
-    rows = np.stack([model.struck(slopes[:, k]) for k in range(sd.size)], axis=1)
+    rows = _struck_along(model, slopes)
     if model.forces is None:
         return rows
     step, weights = STRUCTURE.landing_step, landing_weights(landing)
@@ -208,6 +215,37 @@ def direction_rows(model: HitModel, landing: FloatArray, sd: FloatArray) -> Floa
         forces = law_forces(model.campaign, model.state, model.frame, moved, fine=False)
         rows[:, k] += model.pushed((forces - model.forces) / step)
     return rows
+
+
+def _struck_along(model: HitModel, weights: FloatArray) -> FloatArray:
+    """Return the response to the hammer in several directions of each hit.
+
+    Args:
+        model: joints and frame.
+        weights: of the columns of each record's point, shape (n_records, n, 9).
+
+    Returns:
+        Shape (n_records, n, n_channels, count).
+    """
+    bodies, frame = model.state.bodies_of(model.campaign.bodies), model.frame
+    columns = [point_columns(p) for p in model.state.points_of(bodies)]
+    channels = model.transfers().T
+    found = np.empty((*weights.shape[:2], *model.shape))
+    points = model.campaign.hits.point
+    for one in model.closures:
+        struck, place = np.unique(points[one.records], return_inverse=True)
+        every = np.concatenate([columns[point] for point in struck])
+        response = close(bodies, one.state, frame.s, every, one.torque)
+        lines = np.ascontiguousarray(response.transpose(2, 1, 0))
+        lines *= channels
+        # Weights are real: two real products are half of a complex one.
+        flat = lines.view(np.float64).reshape(len(struck), COLUMNS, -1)
+        for record, at in zip(one.records, place, strict=True):
+            moved = (weights[record] @ flat[at]).view(np.complex128)
+            moved = moved.reshape(-1, *lines.shape[1:])
+            moved *= frame.force[record]
+            found[record] = frame.records(moved)
+    return found
 
 
 def hit_model(
@@ -231,39 +269,45 @@ def hit_model(
             state.
     """
     bodies = state.bodies_of(campaign.bodies)
-    columns = [point_columns(p) for p in state.points_of(bodies)]
+    struck = struck_columns(campaign, state, weights)
+    ports = np.zeros((0, bodies.omega.size))
     if state.laws:
         rows = bodies.bolts.reshape(-1, bodies.omega.size)
-        columns.append(rows[list(law_ports(state.laws))])
-    stacked = np.concatenate(columns)
-    if flexibility is not None and flexibility.holds(state, frame.s):
-        every = np.arange(campaign.hits.torque.size)
-        found = flexibility.response(bodies, state, stacked)
-        closures: tuple[TorqueClosure, ...] = (
-            TorqueClosure(1.0, state, every, found, None),
-        )
-    else:
-        closures = tuple(
-            _closed_at(bodies, own, frame, stacked, torque, records)
-            for torque, own, records in _torques(campaign, state)
-        )
+        ports = rows[list(law_ports(state.laws))]
+    if flexibility is not None and not flexibility.holds(state, frame.s):
+        flexibility = None
+    closures = []
+    for torque, own, records in _torques(campaign, state):
+        columns, column_of = np.unique(struck[records], axis=0, return_inverse=True)
+        every = np.concatenate([columns, ports])
+        if flexibility is not None:
+            found = flexibility.response(bodies, own, every)
+        else:
+            found = close(bodies, own, frame.s, every, torque)
+        at = np.asarray(column_of, dtype=np.int64).ravel()
+        closures.append(TorqueClosure(torque, own, records, columns, at, found))
     forces = None
     if state.laws:
         forces = law_forces(campaign, state, frame, weights, fine=fine)
-    return HitModel(campaign, state, frame, stacked, closures, forces)
+    return HitModel(campaign, state, frame, ports, tuple(closures), forces)
 
 
-def _closed_at(
-    bodies: JointedBodies,
-    state: JointState,
-    frame: HitFrame,
-    columns: FloatArray,
-    torque: float,
-    records: IntArray,
-) -> TorqueClosure:
-    """Return the closed response at one torque."""
-    closure = close(bodies, state, frame.s, columns, torque)
-    return TorqueClosure(torque, state, records, closure.response, closure)
+def struck_columns(
+    campaign: HitCampaign, state: JointState, weights: FloatArray
+) -> FloatArray:
+    """Return the modal force of each record per force of the hammer.
+
+    Args:
+        campaign: hits and modes.
+        state: of the model.
+        weights: of the columns of each record's point, shape (n_records, 9).
+
+    Returns:
+        Shape (n_records, n_modes).
+    """
+    points = state.points_of(state.bodies_of(campaign.bodies))
+    shapes = np.stack([point_columns(p) for p in points])[campaign.hits.point]
+    return np.asarray(np.einsum("rc,rcn->rn", weights, shapes))
 
 
 def _torques(
@@ -313,9 +357,7 @@ def law_forces(
     raw = np.zeros((len(hits.raw_force), length))
     known = min(length, hits.raw_force.shape[1])
     raw[:, :known] = hits.raw_force[:, :known]
-    struck = [point_columns(p) for p in state.points_of(bodies)]
-    shapes = np.stack(struck)[hits.point]
-    columns = np.einsum("rc,rcn->rn", weights, shapes)
+    columns = struck_columns(campaign, state, weights)
     ports = len(law_ports(state.laws))
     preload = hits.torque / campaign.nominal.torque_reference
     found = np.empty((len(raw), ports, len(frame.s)), dtype=np.complex128)
