@@ -45,6 +45,7 @@ class Fit:
         cost: chi2 of the data plus that of the priors.
         prior: diagonal of the prior's precision, shape (n,).
         centre: of the prior, shape (n,).
+        kept: covariance of x, where it is kept without the slopes, shape (n, n).
     """
 
     x: FloatArray
@@ -55,6 +56,7 @@ class Fit:
     cost: float
     prior: FloatArray
     centre: FloatArray
+    kept: FloatArray | None = None
 
     @property
     def base(self) -> FloatArray:
@@ -74,6 +76,8 @@ class Fit:
     @property
     def covariance(self) -> FloatArray:
         """Of x by the curvature of the cost, shape (n, n)."""
+        if self.kept is not None:
+            return self.kept
         hessian = curvature(self.jacobian) + np.diag(self.prior)
         return np.asarray(np.linalg.pinv(hessian, hermitian=True))
 
@@ -87,6 +91,12 @@ class Fit:
 def without_slopes(fit: Fit) -> Fit:
     """Return a fit that takes little memory; its covariance is not known any more."""
     return replace(fit, jacobian=np.zeros((0, fit.x.size)))
+
+
+def with_covariance_alone(fit: Fit) -> Fit:
+    """Return a fit that takes little memory, with the covariance of its slopes."""
+    covariance = fit.covariance if fit.jacobian.size else fit.kept
+    return replace(without_slopes(fit), kept=covariance)
 
 
 def split(

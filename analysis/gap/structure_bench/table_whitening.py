@@ -58,13 +58,18 @@ class PointWhitening:
         """Whiten rows over sigma in place, (n_records, n, n_channels, n_samples)."""
         known = self._in_basis(rows)
         moved = self.removed @ self._against(rows, known)
+        known -= (moved.T @ self._within).reshape(known.shape)
+        known = _of_channels(self.taken, known)
         moved = moved.reshape(len(rows), -1, rows.shape[1])
-        known -= np.einsum("rdca,rdn->nca", self.within, moved, optimize=True)
-        known = np.einsum("cab,ncb->nca", self.taken, known, optimize=True)
         for r in range(len(rows)):
             flat = self.directions[r].reshape(moved.shape[1], -1)
             rows[r] -= (moved[r].T @ flat).reshape(rows[r].shape)
             rows[r] -= known @ self.basis[r]
+
+    @property
+    def _within(self) -> FloatArray:
+        """All directions in the basis, shape (n_all_directions, n_channels * n)."""
+        return self.within.reshape(len(self.inner), -1)
 
     def _in_basis(self, rows: FloatArray) -> FloatArray:
         """Return Q times rows, shape (n, n_channels, n_basis)."""
@@ -82,15 +87,24 @@ class PointWhitening:
             known: Q times them.
         """
         _, count, _, _ = rows.shape
-        found = np.stack(
+        found = np.concatenate(
             [
                 d.reshape(len(d), -1) @ row.reshape(count, -1).T
                 for d, row in zip(self.directions, rows, strict=True)
             ]
         )
-        known = np.einsum("cab,ncb->nca", self.twice, known, optimize=True)
-        found -= np.einsum("rdca,nca->rdn", self.within, known, optimize=True)
-        return np.asarray(found.reshape(-1, count))
+        twice = _of_channels(self.twice, known).reshape(count, -1)
+        return np.asarray(found - self._within @ twice.T)
+
+
+def _of_channels(matrices: FloatArray, known: FloatArray) -> FloatArray:
+    """Return the product of the matrix of each channel, (n_channels, n, n), with rows.
+
+    Args:
+        matrices: symmetric.
+        known: rows in the basis, shape (n_rows, n_channels, n).
+    """
+    return np.asarray((known.transpose(1, 0, 2) @ matrices).transpose(1, 0, 2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

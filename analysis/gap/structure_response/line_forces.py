@@ -285,7 +285,8 @@ def summed_products(
 
     Args:
         left: of each row, shape (n, n_rows, n_lines).
-        right: of each distinct column, shape (n_all, n_columns, n_lines).
+        right: of each distinct column, shape (n_all, n_columns, n_lines); those of
+            no record are passed over.
         chosen: which of all belong to the n, shape (n,).
         records: some of all, shape (n_records,), the column of each, likewise, and its
             factor on each line, shape (n_records, n_lines).
@@ -295,6 +296,8 @@ def summed_products(
     count, rows, lines = left[0].shape
     re, im = np.empty(lines), np.empty(lines)
     for column in range(right[0].shape[1]):
+        if not np.any(column_of == column):
+            continue
         for r in range(rows):
             re[:] = 0.0
             im[:] = 0.0
@@ -309,6 +312,26 @@ def summed_products(
                     target, factor = found[own[record], r], force[record]
                     for k in range(lines):
                         target[k] = complex(re[k], im[k]) * factor[k]
+
+
+@compiled(fastmath=_FMA, error_model="numpy")
+def multiplied(planes: Planes, factor: ComplexArray) -> Planes:
+    """Return planes times a factor that is the same for all columns.
+
+    Args:
+        planes: shape (n, n_columns, n_lines).
+        factor: shape (n, n_lines).
+    """
+    a, b = planes
+    re, im = np.empty(a.shape), np.empty(a.shape)
+    for m in range(a.shape[0]):
+        own = factor[m]
+        for j in range(a.shape[1]):
+            for k in range(a.shape[2]):
+                x, y, z = a[m, j, k], b[m, j, k], own[k]
+                re[m, j, k] = x * z.real - y * z.imag
+                im[m, j, k] = x * z.imag + y * z.real
+    return re, im
 
 
 @compiled(fastmath=_FMA, error_model="numpy")

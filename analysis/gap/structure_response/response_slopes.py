@@ -33,6 +33,7 @@ from jointbench.analysis.gap.structure_response.jointed_bodies import (
 )
 from jointbench.analysis.gap.structure_response.line_forces import (
     Planes,
+    multiplied,
     summed_products,
 )
 
@@ -96,8 +97,8 @@ class RecordSlopes:
     Attributes:
         left: fields of the sensors, in the units of their channels, shape
             (n_fields, n_channels, n_lines).
-        right: real and imaginary parts of the fields of hits, shape
-            (n_fields, n_columns, n_lines).
+        right: real and imaginary parts of the fields of hits, and of other columns,
+            shape (n_fields, n_columns, n_lines).
         column_of: column of each record, shape (n_records,).
         force: factor of each record on its column, shape (n_records, n_lines).
         terms: by coordinate.
@@ -138,19 +139,37 @@ def record_slopes(
     sensors = at.state.sensors_of(at.bodies)
     fields = _fields(at, np.concatenate([sensors, hits.columns, hits.ports]))
     count = len(sensors)
-    struck = slice(count, count + len(hits.columns))
     left = (fields[0][:, :count] + 1j * fields[1][:, :count]) * transfers.T
-    right, column_of, force = fields, hits.column_of, hits.force
-    if hits.laws is None:
-        right = fields[0][:, struck], fields[1][:, struck]
-    else:
-        whole = (fields[0] + 1j * fields[1])[:, struck.start :]
-        moved = whole[:, column_of] * force
-        ports = whole[:, len(hits.columns) :]
-        moved -= np.einsum("kpl,rpl->krl", ports, hits.laws, optimize=True)
-        right = np.ascontiguousarray(moved.real), np.ascontiguousarray(moved.imag)
+    right, column_of, force = fields, hits.column_of + count, hits.force
+    if hits.laws is not None:
+        own = fields[0][:, count:], fields[1][:, count:]
+        right = _with_laws(own, hits, hits.laws)
         column_of, force = np.arange(len(force)), np.ones_like(force)
     return RecordSlopes(left, right, column_of, force, _terms(at, layout))
+
+
+def _with_laws(fields: Planes, hits: HitForces, laws: ComplexArray) -> Planes:
+    """Return the fields of each record with the forces of laws.
+
+    Args:
+        fields: of force columns, then of ports, shape
+            (n_fields, n_columns + n_ports, n_lines).
+        hits: forces of the hammer.
+        laws: forces across the ports, shape (n_records, n_ports, n_lines).
+
+    Returns:
+        Shape (n_fields, n_records, n_lines).
+    """
+    shape = len(fields[0]), *hits.force.shape
+    found = np.empty(shape), np.empty(shape)
+    count = len(hits.columns)
+    # Field by field: of all together, complex copies would be twice as large as these.
+    for k, (re, im) in enumerate(zip(*fields, strict=True)):
+        own = re + 1j * im
+        moved = own[hits.column_of] * hits.force
+        moved -= np.einsum("pl,rpl->rl", own[count:], laws)
+        found[0][k], found[1][k] = moved.real, moved.imag
+    return found
 
 
 def _fields(at: ClosedAt, columns: FloatArray) -> Planes:
@@ -165,18 +184,18 @@ def _fields(at: ClosedAt, columns: FloatArray) -> Planes:
     places = np.zeros((0, modes)) if tuned is None else tuned.rows
     shape = joints + modes + len(places), len(columns), at.s.size
     fields = np.empty(shape), np.empty(shape)
-    d = modal_receptances(at.bodies, at.state, at.s).T[:, None]
+    d = np.ascontiguousarray(modal_receptances(at.bodies, at.state, at.s).T)
     for own, part in zip(fields, found.planes, strict=True):
         own[:joints] = part[:joints]
-        flat = found.rows.T @ part.reshape(len(part), -1)
-        np.negative(flat.reshape(modes, *shape[1:]), out=own[joints : joints + modes])
-    re, im = (own[joints : joints + modes] for own in fields)
-    re += columns.T[:, :, None]
+        flat = own.reshape(len(own), -1)[joints : joints + modes]
+        np.matmul(-found.rows.T, part.reshape(len(part), -1), out=flat)
+    own_modes = slice(joints, joints + modes)
+    moving = fields[0][own_modes], fields[1][own_modes]
+    np.add(moving[0], columns.T[:, :, None], out=moving[0])
     if len(places):
-        moving = (d.real * re - d.imag * im, d.real * im + d.imag * re)
-        for own, part in zip(fields, moving, strict=True):
-            flat = places @ part.reshape(modes, -1)
-            own[joints + modes :] = flat.reshape(-1, *shape[1:])
+        for own, part in zip(fields, multiplied(moving, d), strict=True):
+            flat = own.reshape(len(own), -1)[joints + modes :]
+            np.matmul(places, part.reshape(modes, -1), out=flat)
     return fields
 
 

@@ -219,7 +219,7 @@ def settled(
     candidates: Sequence[Candidate],
     *,
     near: bool,
-    rival: float = np.inf,
+    rival: float | None = None,
 ) -> tuple[StructureBench, Fit]:
     """Fit all whole records, in turn with where each hit landed.
 
@@ -230,7 +230,7 @@ def settled(
         near: whether the start is near the records: each hit is met where it landed
             before the first step, which would move such a start away again.
         rival: cost that is to be reached; a fit that would need very many more steps
-            is left where it is.
+            is left where it is, and its slopes are those of the step before.
     """
     bench = _met(bench, start, candidates, near=near)
     fit = _whole(bench, start, candidates, rival=rival)
@@ -242,9 +242,11 @@ def settled(
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at_rest()  # or it keeps its whitening beside the next one
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        exact = near and given is None
+        exact = near and given is None and rival is None
         fit = _whole(bench, fit.x, candidates, given, exact=exact, rival=rival)
-        if fit.cost - rival > SEARCH.patience * abs(before - fit.cost):
+        if rival is not None and fit.cost - rival > SEARCH.patience * abs(
+            before - fit.cost
+        ):
             break
         least = (
             STRUCTURE_SEARCH.settled_share if near else STRUCTURE_SEARCH.approach_share
@@ -306,13 +308,13 @@ def _whole(
     known: SlopesOnHand | None = None,
     *,
     exact: bool = False,
-    rival: float = np.inf,
+    rival: float | None = None,
 ) -> Fit:
     """Fit whole records, hits as expanded; if exact, with the slopes at the end."""
     how = Descent(
         FULL,
         iterations=STRUCTURE_SEARCH.whole_iterations,
-        rival=None if np.isinf(rival) else rival,
+        rival=rival,
         exact_slopes=exact,
         least_drop=_least_drop(bench, candidates, FULL),
         dof=_dof(bench, FULL),

@@ -23,7 +23,7 @@ from jointbench.analysis.gap.judgement.amplitudes import (
 )
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
-from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
@@ -80,6 +80,7 @@ from jointbench.analysis.gap.structure_search.whole_records import (
     best_first,
     in_whole_records,
     leaves_much,
+    with_covariance,
     with_slopes,
 )
 
@@ -273,7 +274,7 @@ def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None
         base: fit without effects.
         pair: fit of two effects.
     """
-    sizes = amplitude_sizes(with_slopes(pair.bench, pair.fit))
+    sizes = amplitude_sizes(with_covariance(pair.bench, pair.fit))
     if not pair.acceptance.passed or min(sizes) >= STRUCTURE_SEARCH.plain_amplitude:
         return None
     kept = pair.fit.terms[int(np.argmax(sizes))]
@@ -313,7 +314,7 @@ def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:
 
 def _both_matter(judged: JudgedFit) -> bool:
     """Return whether each effect of a pair is clearly on."""
-    amplitude = weakest_amplitude(with_slopes(judged.bench, judged.fit))
+    amplitude = weakest_amplitude(with_covariance(judged.bench, judged.fit))
     return amplitude >= judged.bench.policy.amplitude_limit
 
 
@@ -338,7 +339,7 @@ def needless(
         ended: cost of the base where it had ended.
         far_off: whether the base was.
     """
-    fit, uncertain = with_slopes(best.bench, best.fit), best.bench.uncertain
+    fit, uncertain = with_covariance(best.bench, best.fit), best.bench.uncertain
     amplitude = weakest_amplitude(fit)
     if amplitude >= STRUCTURE_SEARCH.plain_amplitude and (far_off or not uncertain):
         return None
@@ -348,12 +349,14 @@ def needless(
     if uncertain and cost > STRUCTURE_SEARCH.again_ratio * ended:
         return None
     del fit
-    rival = np.inf
+    rival = None
     if uncertain and not within_tolerance(best.bench, best.fit):
         rival = best.fit.cost + STRUCTURE_SEARCH.uncertain_drop
     bench, base = settled(best.bench, start, (), near=True, rival=rival)
     if bench.uncertain and takes(bench, best.fit, base):
         return None
+    if rival is not None:  # slopes of one that does not reach it are not needed
+        base = with_slopes(bench, without_slopes(base))
     judged = accept_structure(bench, base, base)
     nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
     if not (judged.passed or nothing):

@@ -10,7 +10,11 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
-from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.fit_records import (
+    Fit,
+    with_covariance_alone,
+    without_slopes,
+)
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress
@@ -179,14 +183,16 @@ def best_first(done: Sequence[JudgedFit]) -> list[JudgedFit]:
 
 
 def at_rest(one: JudgedFit) -> JudgedFit:
-    """Return a fit without slopes, but for those of laws, which take long.
+    """Return a fit with its covariance alone, and with the slopes of laws.
+
+    These take long.
 
     Args:
         one: fit to all records.
     """
     if one.bench.nonlinear(one.fit.candidates):
         return one
-    return replace(one, fit=without_slopes(one.fit))
+    return replace(one, fit=with_covariance_alone(one.fit))
 
 
 def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
@@ -201,6 +207,16 @@ def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
     problem = make_problem(bench, fit.candidates)
     found = minimise(problem, fit.x, FULL, iterations=0)
     return replace(found, cost=fit.cost)
+
+
+def with_covariance(bench: StructureBench, fit: Fit) -> Fit:
+    """Return a fit with its covariance: as kept, or with its slopes.
+
+    Args:
+        bench: on which it was found.
+        fit: of effects that are not integrated, or with its slopes.
+    """
+    return fit if fit.kept is not None else with_slopes(bench, fit)
 
 
 def leaves_much(best: JudgedFit) -> bool:
