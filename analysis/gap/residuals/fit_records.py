@@ -46,6 +46,7 @@ class Fit:
         prior: diagonal of the prior's precision, shape (n,).
         centre: of the prior, shape (n,).
         kept: covariance of x, where it is kept without the slopes, shape (n, n).
+        late: whether the slopes are still those of an earlier step.
     """
 
     x: FloatArray
@@ -57,6 +58,7 @@ class Fit:
     prior: FloatArray
     centre: FloatArray
     kept: FloatArray | None = None
+    late: bool = False
 
     @property
     def base(self) -> FloatArray:

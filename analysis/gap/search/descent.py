@@ -218,10 +218,18 @@ def descend(
             j, age = how.slopes(problem, x, r), 0
         near.j = _NO_SLOPES
     if age > 0 and how.exact_slopes:
-        j = _NO_SLOPES
+        j, age = _NO_SLOPES, 0
         j = how.slopes(problem, x, r)
     return Fit(
-        x, problem.n_base, problem.candidates, r, j, cost, problem.prior, problem.centre
+        x,
+        problem.n_base,
+        problem.candidates,
+        r,
+        j,
+        cost,
+        problem.prior,
+        problem.centre,
+        late=age > 0,
     )
 
 

@@ -242,8 +242,7 @@ def settled(
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at_rest()  # or it keeps its whitening beside the next one
         bench = bench.at(fit.base, fit.terms, landing, bench.floor)
-        exact = near and given is None and rival is None
-        fit = _whole(bench, fit.x, candidates, given, exact=exact, rival=rival)
+        fit = _whole(bench, fit.x, candidates, given, rival=rival)
         if rival is not None and fit.cost - rival > SEARCH.patience * abs(
             before - fit.cost
         ):
@@ -254,6 +253,8 @@ def settled(
         if before - fit.cost < least * fit.cost:
             break
     if near and not bench.nonlinear(candidates):
+        if fit.late and rival is None:
+            fit = _with_slopes_at_end(bench, without_slopes(fit))
         return bench, fit
     fit, given = _left_to_next(bench, fit)
     steps = STRUCTURE_SEARCH.fine_iterations
@@ -307,21 +308,27 @@ def _whole(
     candidates: Sequence[Candidate],
     known: SlopesOnHand | None = None,
     *,
-    exact: bool = False,
     rival: float | None = None,
 ) -> Fit:
-    """Fit whole records, hits as expanded; if exact, with the slopes at the end."""
+    """Fit whole records, hits as expanded."""
     how = Descent(
         FULL,
         iterations=STRUCTURE_SEARCH.whole_iterations,
         rival=rival,
-        exact_slopes=exact,
+        exact_slopes=False,
         least_drop=_least_drop(bench, candidates, FULL),
         dof=_dof(bench, FULL),
         sparing=bench.uncertain,
     )
     problem = _weighed(bench, candidates, FULL)
     return _stated(bench, descend(problem, start, how, known))
+
+
+def _with_slopes_at_end(bench: StructureBench, fit: Fit) -> Fit:
+    """Return a fit to whole records with its slopes where it ended."""
+    problem = _weighed(bench, fit.candidates, FULL)
+    slopes = minimise(problem, fit.x, FULL, iterations=0).jacobian
+    return replace(fit, jacobian=slopes, late=False)
 
 
 def _weighed(
