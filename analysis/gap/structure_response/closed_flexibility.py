@@ -32,7 +32,7 @@ class ClosedFlexibility:
     Attributes:
         state: of the joints and bodies.
         s: Laplace variable, shape (n_lines,).
-        modes: nothing attached, shape (n_lines, n_modes, n_modes).
+        modes: nothing attached, shape (n_modes, n_modes, n_lines).
     """
 
     state: JointState
@@ -61,10 +61,18 @@ class ClosedFlexibility:
             bodies: modes and rows.
             state: with these joints and bodies.
             columns: force rows in modes, shape (n_columns, n_modes).
+
+        Returns:
+            Displacement per force [m/N], shape (n_lines, n_rows, n_columns).
         """
         added = replace(state, tuned=None)
         rows, columns = ends_with_added(bodies, added, columns)
-        return with_added(bodies, added, self.s, (rows @ self.modes) @ columns.T)
+        modes = self.modes.shape[0]
+        # Rows and columns are real: a real product is a quarter of a complex one.
+        flat = self.modes.view(np.float64)
+        moved = (columns @ flat.reshape(modes, -1)).reshape(len(columns), modes, -1)
+        found = (rows @ moved).view(np.complex128)
+        return with_added(bodies, added, self.s, found.transpose(2, 1, 0))
 
 
 def closed_flexibility(
@@ -81,7 +89,9 @@ def closed_flexibility(
         return None
     each = np.eye(bodies.omega.size)
     bare = replace(state, sensors=each, attached=())
-    return ClosedFlexibility(state, s, close(bodies, bare, s, each))
+    closed = close(bodies, bare, s, each)
+    modes = np.ascontiguousarray(closed.transpose(1, 2, 0))
+    return ClosedFlexibility(state, s, modes)
 
 
 def _numbers(value: Any) -> tuple[Any, Any]:

@@ -109,7 +109,7 @@ def test_responses_to_errors_of_bodies_are_derivatives(
         assert flexibility is not None
         sensors = np.concatenate([state.sensors_of(campaign.bodies), unit])
         columns = np.concatenate([one.columns, unit])
-        response = (sensors @ flexibility.modes) @ columns.T
+        response = (sensors @ flexibility.modes.transpose(2, 0, 1)) @ columns.T
         moved = with_added(campaign.bodies, state, model.frame.s, response)
         changed = replace(model, closures=(replace(one, response=moved),))
         found = (changed.struck() - model.struck()) / share
