@@ -107,10 +107,10 @@ class StructureSettings:
         "it changes a residual by 5e-5 of its part along the direction",
     )
     lines_at_once: int = numerical(
-        512,
+        128,
         "lines",
-        "lines at which closed rows and columns are computed at once",
-        "all of 60 hits with 12 channels took 0.6 GB beside the slopes",
+        "lines whose sums over modes are computed at once",
+        "these sums stay in the cache until the joints are closed",
     )
     columns_at_once: int = numerical(
         8,
