@@ -20,8 +20,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 F = TypeVar("F", bound=Callable[..., Any])
 COMPILING = (
-    "compiling the time integration: 10 to 20 s, once; later runs load it from the "
-    "cache"
+    "compiling the models: 10 to 20 s, once; later runs load them from the cache"
 )
 _LISTENERS: list[Callable[[str], None]] = []
 

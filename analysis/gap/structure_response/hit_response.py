@@ -35,7 +35,7 @@ from jointbench.analysis.gap.structure_response.port_law_settings import PORT_LA
 from jointbench.analysis.gap.structure_response.port_laws import LawForm, law_ports
 from jointbench.analysis.gap.structure_response.response_slopes import (
     ClosedAt,
-    HitForces,
+    HitsOnModes,
     record_slopes,
 )
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
@@ -146,11 +146,11 @@ class HitModel:
                     )
             write_over(frame.damped(spectrum), frame.growth, sigma, found[k])
 
-    def _forces_of(self, one: TorqueClosure) -> HitForces:
+    def _forces_of(self, one: TorqueClosure) -> HitsOnModes:
         """Return the forces of the records of a closure."""
         force = self.frame.force[one.records]
         laws = None if self.forces is None else self.forces[one.records]
-        return HitForces(one.columns, one.column_of, force, self.ports, laws)
+        return HitsOnModes(one.columns, one.column_of, force, self.ports, laws)
 
     def _records(self, forces: ComplexArray | None) -> FloatArray:
         """Return the records of all hits, with forces across the ports or without."""

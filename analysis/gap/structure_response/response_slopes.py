@@ -56,7 +56,7 @@ class ClosedAt:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class HitForces:
+class HitsOnModes:
     """Forces of hits, and of laws at ports, on the modes.
 
     Attributes:
@@ -126,7 +126,7 @@ class RecordSlopes:
 
 
 def record_slopes(
-    at: ClosedAt, hits: HitForces, transfers: ComplexArray, layout: BaseLayout
+    at: ClosedAt, hits: HitsOnModes, transfers: ComplexArray, layout: BaseLayout
 ) -> RecordSlopes:
     """Return the slopes of records by each base coordinate.
 
@@ -148,7 +148,7 @@ def record_slopes(
     return RecordSlopes(left, right, column_of, force, _terms(at, layout))
 
 
-def _with_laws(fields: Planes, hits: HitForces, laws: ComplexArray) -> Planes:
+def _with_laws(fields: Planes, hits: HitsOnModes, laws: ComplexArray) -> Planes:
     """Return the fields of each record with the forces of laws.
 
     Args:

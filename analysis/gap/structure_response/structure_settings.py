@@ -107,10 +107,10 @@ class StructureSettings:
         "it changes a residual by 5e-5 of its part along the direction",
     )
     lines_at_once: int = numerical(
-        128,
+        512,
         "lines",
         "lines whose sums over modes are computed at once",
-        "these sums stay in the cache until the joints are closed",
+        "25 MB with 60 hits and 12 channels; 64 to 512 take the same time",
     )
     columns_at_once: int = numerical(
         8,

@@ -38,9 +38,9 @@ from jointbench.analysis.gap.structure_response.hit_campaign import (
     RejectedHit,
 )
 from jointbench.analysis.gap.structure_search.fit_summary import fit_summary
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import search_structure
-from jointbench.analysis.gap.structure_search.whole_records import with_slopes
 
 OTHER_POINTS = (
     "hit a further point off the lines of symmetry, in the tangential direction as "

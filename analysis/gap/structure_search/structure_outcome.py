@@ -16,13 +16,13 @@ from jointbench.analysis.gap.search.selection_round import score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.fit_summary import FitSummary
 from jointbench.analysis.gap.structure_search.sensors_from_base import of_table
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.structure_fits import fitted_finely
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
-    with_slopes,
 )
 
 

@@ -56,6 +56,10 @@ from jointbench.analysis.gap.structure_search.short_windows import (
     carried,
     tested,
 )
+from jointbench.analysis.gap.structure_search.slopes_again import (
+    with_covariance,
+    with_slopes,
+)
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
@@ -80,8 +84,6 @@ from jointbench.analysis.gap.structure_search.whole_records import (
     best_first,
     in_whole_records,
     leaves_much,
-    with_covariance,
-    with_slopes,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)

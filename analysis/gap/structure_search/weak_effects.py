@@ -24,10 +24,10 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, score
-from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.body_errors import (
+from jointbench.analysis.gap.structure_bench.body_errors import (
     responses_to_body_errors,
 )
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.residue_errors import (
     separable,
     typical_peaks,

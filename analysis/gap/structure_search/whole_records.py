@@ -9,18 +9,16 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
-from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import (
     Fit,
     with_covariance_alone,
     without_slopes,
 )
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.continued_laws import continued
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
 )
@@ -193,30 +191,6 @@ def at_rest(one: JudgedFit) -> JudgedFit:
     if one.bench.nonlinear(one.fit.candidates):
         return one
     return replace(one, fit=with_covariance_alone(one.fit))
-
-
-def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
-    """Return a fit with its slopes, which a verdict needs, and its cost.
-
-    Args:
-        bench: on which it was found.
-        fit: of effects that are not integrated, or with its slopes.
-    """
-    if fit.jacobian.size:
-        return fit
-    problem = make_problem(bench, fit.candidates)
-    found = minimise(problem, fit.x, FULL, iterations=0)
-    return replace(found, cost=fit.cost)
-
-
-def with_covariance(bench: StructureBench, fit: Fit) -> Fit:
-    """Return a fit with its covariance: as kept, or with its slopes.
-
-    Args:
-        bench: on which it was found.
-        fit: of effects that are not integrated, or with its slopes.
-    """
-    return fit if fit.kept is not None else with_slopes(bench, fit)
 
 
 def leaves_much(best: JudgedFit) -> bool:

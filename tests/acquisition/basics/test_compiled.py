@@ -130,7 +130,7 @@ def test_a_compilation_is_announced_once_and_a_cached_function_is_not(
     write(tmp_path, "outer.py", OUTER)
     write(tmp_path, "inner.py", INNER)
     write(tmp_path, "constants.py", "FACTOR = 2\n")
-    for expected in (["compiling the time integration"], []):
+    for expected in (["compiling the models"], []):
         heard: list[str] = []
         always, _ = start()
         with announced(heard.append):

@@ -11,11 +11,11 @@ from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
-from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.added_to_bodies import with_added
-from jointbench.analysis.gap.structure_response.body_errors import (
+from jointbench.analysis.gap.structure_bench.body_errors import (
     responses_to_body_errors,
 )
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.added_to_bodies import with_added
 from jointbench.analysis.gap.structure_response.closed_flexibility import (
     closed_flexibility,
 )
@@ -25,6 +25,7 @@ from jointbench.analysis.gap.structure_search.fits_from_base import WINDOW
 from jointbench.analysis.gap.structure_search.records_of_search import hardest
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
 from jointbench.analysis.gap.structure_search.sensors_from_base import sensors_from_base
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
 )
@@ -37,10 +38,7 @@ from jointbench.analysis.gap.structure_search.weak_effects import (
     weighed_by_bodies,
 )
 from jointbench.analysis.gap.structure_search.weak_settings import WEAK
-from jointbench.analysis.gap.structure_search.whole_records import (
-    JudgedFit,
-    with_slopes,
-)
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 
 GAIN = 0.04
 
