@@ -167,8 +167,9 @@ def _by_lines(
         coupled = state.rocking
         # It loses as much energy per cycle as the bolts do.
         loss = 1.0 + state.compliance[NORMAL] * state.damping[NORMAL] * s
-    for first in range(0, s.size, STRUCTURE.lines_at_once):
-        some = slice(first, min(first + STRUCTURE.lines_at_once, s.size))
+    step = max(STRUCTURE.sums_at_once // len(pairs), 1)
+    for first in range(0, s.size, step):
+        some = slice(first, min(first + step, s.size))
         d = modal_receptances(bodies, state, s[some])
         interfaces = (
             joint_compliances(bodies, state, s[some], torque),

@@ -106,11 +106,12 @@ class StructureSettings:
         "variance of a direction below which whitening leaves it",
         "it changes a residual by 5e-5 of its part along the direction",
     )
-    lines_at_once: int = numerical(
-        512,
-        "lines",
-        "lines whose sums over modes are computed at once",
-        "25 MB with 60 hits and 12 channels; 64 to 512 take the same time",
+    sums_at_once: int = numerical(
+        2_000_000,
+        "-",
+        "sums over modes that are computed at once, for as many lines as they are of",
+        "640 lines of 12 channels and 41 hits, 32 MB; a flexibility of 200 modes has "
+        "70,000 sums at each line",
     )
     columns_at_once: int = numerical(
         8,
