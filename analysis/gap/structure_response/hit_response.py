@@ -90,13 +90,21 @@ class HitModel:
         """Channels and samples of a record."""
         return len(self.campaign.bodies.channels), self.frame.count
 
-    def struck(self) -> FloatArray:
-        """Return the response to the hammer alone, shape (n_records, *shape)."""
-        return self._records(None)
-
     def response(self) -> FloatArray:
-        """Return the response with the forces of the laws at the ports."""
-        return self._records(self.forces)
+        """Return the response with the forces of laws, shape (n_records, *shape)."""
+        rows = np.empty((len(self.frame.force), *self.shape))
+        channels = self.transfers().T
+        for one in self.closures:
+            own = one.response[:, :, : len(one.columns)]
+            # Lines last: the transforms are along them.
+            lines = np.ascontiguousarray(own.transpose(2, 1, 0))
+            lines *= channels
+            spectrum = lines[one.column_of]
+            spectrum *= self.frame.force[one.records][:, None]
+            if self.forces is not None:
+                spectrum += self._pushed(one, self.forces)
+            rows[one.records] = self.frame.records(spectrum)
+        return rows
 
     def pushed(self, forces: ComplexArray) -> FloatArray:
         """Return the response to forces across the ports.
@@ -151,22 +159,6 @@ class HitModel:
         force = self.frame.force[one.records]
         laws = None if self.forces is None else self.forces[one.records]
         return HitsOnModes(one.columns, one.column_of, force, self.ports, laws)
-
-    def _records(self, forces: ComplexArray | None) -> FloatArray:
-        """Return the records of all hits, with forces across the ports or without."""
-        rows = np.empty((len(self.frame.force), *self.shape))
-        channels = self.transfers().T
-        for one in self.closures:
-            own = one.response[:, :, : len(one.columns)]
-            # Lines last: the transforms are along them.
-            lines = np.ascontiguousarray(own.transpose(2, 1, 0))
-            lines *= channels
-            spectrum = lines[one.column_of]
-            spectrum *= self.frame.force[one.records][:, None]
-            if forces is not None:
-                spectrum += self._pushed(one, forces)
-            rows[one.records] = self.frame.records(spectrum)
-        return rows
 
     def _pushed(self, one: TorqueClosure, forces: ComplexArray) -> ComplexArray:
         """Return transforms of the response to forces across the ports.

@@ -18,6 +18,7 @@ Interfaces = tuple[ComplexArray, FloatArray, ComplexArray, ComplexArray, FloatAr
 """Compliance of each joint, shape (n_lines, n_joints); what couples the normal ones, of
 all bolts or none, shape (n, n), and its factor, shape (n_lines,); stiffness of each
 attached thing, shape (n_lines, n_attached), and between tuned modes, (n, n)."""
+_Work = tuple[Planes, Planes, tuple[FloatArray, FloatArray, FloatArray, FloatArray]]
 _EACH, _NORMAL = 3, 2  # freedoms of a bolt, and the one along it
 _FMA = {"contract"}  # NaN stays NaN, which other options of fastmath do not promise
 
@@ -132,8 +133,9 @@ def _closed(
     for i in range(len(coupled)):
         for j in range(len(coupled)):
             one = coupled[i, j] / loss[line]
-            joint_re[3 * i + 2, 3 * j + 2] += one.real
-            joint_im[3 * i + 2, 3 * j + 2] += one.imag
+            row, column = _EACH * i + _NORMAL, _EACH * j + _NORMAL
+            joint_re[row, column] += one.real
+            joint_im[row, column] += one.imag
     _solve(joint_re, joint_im)
     if added:
         _close_added(line, (attached, tuned), between, across, work)
@@ -205,6 +207,24 @@ def _close_added(
 
 
 @compiled(fastmath=_FMA, error_model="numpy")
+def _work_of(interfaces: Interfaces, columns: int) -> _Work:
+    """Return what one line takes, unset: `between`, `across` and `work` of `_closed`.
+
+    Args:
+        interfaces: what holds them.
+        columns: force columns.
+    """
+    compliance, _, _, attached, tuned = interfaces
+    joints, added = compliance.shape[1], attached.shape[1] + len(tuned)
+    count = joints + added
+    between = np.empty((count, count)), np.empty((count, count))
+    across = np.empty((count, columns)), np.empty((count, columns))
+    whole, inner = (joints, count + columns), (added, added + columns)
+    work = np.empty(whole), np.empty(whole), np.empty(inner), np.empty(inner)
+    return between, across, work
+
+
+@compiled(fastmath=_FMA, error_model="numpy")
 def forces_on_lines(
     sums: Planes, interfaces: Interfaces, first: int, found: Planes
 ) -> None:
@@ -216,14 +236,9 @@ def forces_on_lines(
         first: index of the first of these lines among all.
         found: forces on all lines, shape (n_interfaces, n_columns, n_all_lines).
     """
-    compliance, _, _, attached, tuned = interfaces
-    joints, added = compliance.shape[1], attached.shape[1] + len(tuned)
     count, columns, _ = found[0].shape
-    between = np.empty((count, count)), np.empty((count, count))
-    across = np.empty((count, columns)), np.empty((count, columns))
-    shape, inner = (joints, joints + added + columns), (added, added + columns)
-    work = np.empty(shape), np.empty(shape), np.empty(inner), np.empty(inner)
-    for line in range(len(compliance)):
+    between, across, work = _work_of(interfaces, columns)
+    for line in range(len(interfaces[0])):
         _spread(sums[0][line], count, between[0], across[0])
         _spread(sums[1][line], count, between[1], across[1])
         _closed(line, interfaces, between, across, work)
@@ -246,16 +261,11 @@ def responses_on_lines(
         shape: rows and columns.
         found: displacement per force, shape (n_lines, n_rows, n_columns), written.
     """
-    compliance, _, _, attached, tuned = interfaces
-    joints, added = compliance.shape[1], attached.shape[1] + len(tuned)
     rows, columns = shape
-    count = joints + added
-    between = np.empty((count, count)), np.empty((count, count))
-    across = np.empty((count, columns)), np.empty((count, columns))
-    whole, inner = (joints, joints + added + columns), (added, added + columns)
-    work = np.empty(whole), np.empty(whole), np.empty(inner), np.empty(inner)
+    between, across, work = _work_of(interfaces, columns)
+    count = len(between[0])
     own = np.empty(columns), np.empty(columns)
-    for line in range(len(compliance)):
+    for line in range(len(interfaces[0])):
         re, im = sums[0][line], sums[1][line]
         _spread(re, count, between[0], across[0])
         _spread(im, count, between[1], across[1])

@@ -110,7 +110,7 @@ def test_responses_to_errors_of_bodies_are_derivatives(
         response = (sensors @ flexibility.modes.transpose(2, 0, 1)) @ columns.T
         moved = with_added(campaign.bodies, state, model.frame.s, response)
         changed = replace(model, closures=(replace(one, response=moved),))
-        found = (changed.struck() - model.struck()) / share
+        found = (changed.response() - model.response()) / share
         np.testing.assert_allclose(
             rows[:, k], found, rtol=0, atol=0.02 * np.abs(found).max()
         )
