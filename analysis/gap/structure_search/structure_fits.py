@@ -33,6 +33,7 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
 from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )
@@ -254,7 +255,7 @@ def settled(
             break
     if near and not bench.nonlinear(candidates):
         if fit.late and rival is None:
-            fit = _with_slopes_at_end(bench, without_slopes(fit))
+            fit = with_slopes(bench, without_slopes(fit))
         return bench, fit
     fit, given = _left_to_next(bench, fit)
     steps = STRUCTURE_SEARCH.fine_iterations
@@ -322,13 +323,6 @@ def _whole(
     )
     problem = _weighed(bench, candidates, FULL)
     return _stated(bench, descend(problem, start, how, known))
-
-
-def _with_slopes_at_end(bench: StructureBench, fit: Fit) -> Fit:
-    """Return a fit to whole records with its slopes where it ended."""
-    problem = _weighed(bench, fit.candidates, FULL)
-    slopes = minimise(problem, fit.x, FULL, iterations=0).jacobian
-    return replace(fit, jacobian=slopes, late=False)
 
 
 def _weighed(
