@@ -8,7 +8,7 @@ and that of the whole follows from the small matrix W A^-1 W'. Nothing is stored
 as large as all directions of all hits.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,8 +34,8 @@ class PointWhitening:
         twice: 2N - NN, which A^-1 takes where its root takes N.
     """
 
-    directions: FloatArray
-    basis: FloatArray
+    directions: SlopeArray
+    basis: SlopeArray
     taken: FloatArray
     within: FloatArray
     inner: FloatArray
@@ -54,24 +54,35 @@ class PointWhitening:
         found = -np.linalg.solve(np.eye(len(right)) + self.inner, right)
         return np.asarray(found.reshape(len(rows), -1))
 
-    def whiten(self, rows: FloatArray) -> None:
+    def whiten(self, rows: SlopeArray) -> None:
         """Whiten rows over sigma in place, (n_records, n, n_channels, n_samples)."""
         known = self._in_basis(rows)
         moved = self.removed @ self._against(rows, known)
         known -= (moved.T @ self._within).reshape(known.shape)
-        known = _of_channels(self.taken, known)
-        moved = moved.reshape(len(rows), -1, rows.shape[1])
+        known = _of_channels(self.taken, known).astype(rows.dtype)
+        moved = moved.reshape(len(rows), -1, rows.shape[1]).astype(rows.dtype)
         for r in range(len(rows)):
             flat = self.directions[r].reshape(moved.shape[1], -1)
             rows[r] -= (moved[r].T @ flat).reshape(rows[r].shape)
             rows[r] -= known @ self.basis[r]
+
+    def stored_as(self, rows: SlopeArray) -> "PointWhitening":
+        """Return the whitening with its large arrays as rows are stored.
+
+        Their products are then in that precision, and sums over records in double.
+        """
+        if rows.dtype == self.basis.dtype:
+            return self
+        directions: SlopeArray = self.directions.astype(rows.dtype)
+        basis: SlopeArray = self.basis.astype(rows.dtype)
+        return replace(self, directions=directions, basis=basis)
 
     @property
     def _within(self) -> FloatArray:
         """All directions in the basis, shape (n_all_directions, n_channels * n)."""
         return self.within.reshape(len(self.inner), -1)
 
-    def _in_basis(self, rows: FloatArray) -> FloatArray:
+    def _in_basis(self, rows: SlopeArray) -> FloatArray:
         """Return Q times rows, shape (n, n_channels, n_basis)."""
         _, count, channels, _ = rows.shape
         found = np.zeros((count, channels, self.basis.shape[1]))
@@ -79,7 +90,7 @@ class PointWhitening:
             found += row @ basis.T
         return found
 
-    def _against(self, rows: FloatArray, known: FloatArray) -> FloatArray:
+    def _against(self, rows: SlopeArray, known: FloatArray) -> FloatArray:
         """Return W A^-1 times rows, shape (n_all_directions, n).
 
         Args:
@@ -122,11 +133,12 @@ class TableWhitening:
     def __call__(self, rows: SlopeArray) -> None:
         """Whiten rows of records, shape (n_records, n, n_rows), in place."""
         step = STRUCTURE.columns_at_once
-        for own, point in zip(self.records, self.points, strict=True):
+        for own, whole in zip(self.records, self.points, strict=True):
+            point = whole.stored_as(rows)
             for first in range(0, rows.shape[1], step):
                 some = slice(first, first + step)
-                part = np.ascontiguousarray(rows[own, some], dtype=np.float64)
-                block = part.reshape(*part.shape[:2], *point.directions.shape[2:])
+                part: SlopeArray = np.ascontiguousarray(rows[own, some])
+                block: SlopeArray = part.reshape(*part.shape[:2], *point.directions.shape[2:])
                 point.whiten(block)
                 rows[own, some] = part
 

@@ -102,14 +102,15 @@ def close(
     """
     sensors = state.sensors_of(bodies)
     own = interface_rows(bodies, state)
+    fewer, others = sorted((columns, sensors), key=len)
     pairs = np.concatenate(
-        [_between(own, columns), _products(sensors, own), _products(sensors, columns)]
+        [_between(own, fewer), _products(own, others), _products(fewer, others)]
     )
-    shape = len(sensors), len(columns)
+    shape = len(fewer), len(others)
     found = np.empty((s.size, *shape), complex)
     for some, sums, interfaces in _by_lines(bodies, state, s, pairs, torque):
         responses_on_lines(sums, interfaces, shape, found[some])
-    return found
+    return found if fewer is sensors else found.transpose(0, 2, 1)
 
 
 def closed_forces(

@@ -254,33 +254,37 @@ def responses_on_lines(
 ) -> None:
     """Write the response of rows to columns, everything closed, on some lines.
 
+    Responses are reciprocal, so the fewer ones of rows and columns are closed.
+
     Args:
-        sums: over modes, of each line: as in `_spread`, then of each row with each
-            interface, then of each row with each column, shape (n_lines, n).
+        sums: over modes, of each line: as in `_spread`, with the fewer ones as columns,
+            then of each interface with each of the others, then of each of the fewer
+            ones with each of the others, shape (n_lines, n).
         interfaces: joints, then what is added, on the same lines.
-        shape: rows and columns.
-        found: displacement per force, shape (n_lines, n_rows, n_columns), written.
+        shape: how many the fewer ones are, and the others.
+        found: displacement per force, shape (n_lines, n_fewer, n_others), written.
     """
-    rows, columns = shape
-    between, across, work = _work_of(interfaces, columns)
+    fewer, others = shape
+    between, across, work = _work_of(interfaces, fewer)
     count = len(between[0])
-    own = np.empty(columns), np.empty(columns)
+    own = np.empty(others), np.empty(others)
     for line in range(len(interfaces[0])):
         re, im = sums[0][line], sums[1][line]
         _spread(re, count, between[0], across[0])
         _spread(im, count, between[1], across[1])
         _closed(line, interfaces, between, across, work)
-        ends = count * (count + 1) // 2 + count * columns
-        direct = ends + rows * count
-        for r in range(rows):
-            for j in range(columns):
-                own[0][j] = re[direct + r * columns + j]
-                own[1][j] = im[direct + r * columns + j]
+        ends = count * (count + 1) // 2 + count * fewer
+        direct = ends + count * others
+        for i in range(fewer):
+            at = direct + i * others
+            own[0][:] = re[at : at + others]
+            own[1][:] = im[at : at + others]
             for k in range(count):
-                factor = re[ends + r * count + k], im[ends + r * count + k]
-                _take(factor, (across[0][k], across[1][k]), own)
-            for j in range(columns):
-                found[line, r, j] = complex(own[0][j], own[1][j])
+                some = slice(ends + k * others, ends + (k + 1) * others)
+                factor = across[0][k, i], across[1][k, i]
+                _take(factor, (re[some], im[some]), own)
+            for j in range(others):
+                found[line, i, j] = complex(own[0][j], own[1][j])
 
 
 @compiled(fastmath=_FMA, error_model="numpy")

@@ -15,7 +15,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.acquisition.basics.steady_memory import return_freed_memory
+from jointbench.acquisition.basics.steady_memory import (
+    freed_memory_kept,
+    return_freed_memory,
+)
 from jointbench.analysis.gap.judgement.amplitudes import (
     amplitude_sizes,
     base_without,
@@ -98,7 +101,15 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
         bench: as made, at the coarse floor.
         progress: receives one line for each step.
     """
-    progress = _tidied(progress)
+    slopes = bench.campaign.hits.response.size * bench.base_sd.size
+    if slopes > STRUCTURE_SEARCH.kept_slopes:
+        return _search(bench, _tidied(progress))
+    with freed_memory_kept():
+        return _search(bench, progress)
+
+
+def _search(bench: StructureBench, progress: Progress) -> StructureOutcome:
+    """Fit the base, and search for a missing effect; see `search_structure`."""
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
     few, start = retuned(few, base_in_windows(few), ())

@@ -85,6 +85,20 @@ def test_points_are_whitened_apart(drawn: tuple[PointWhitening, FloatArray]) -> 
     )
 
 
+def test_rows_in_single_precision_are_whitened_as_those_in_double(
+    drawn: tuple[PointWhitening, FloatArray],
+) -> None:
+    """Slopes are stored so; those of a point keep their type and its rounding."""
+    point, _ = drawn
+    whole = TableWhitening((np.arange(RECORDS),), (point,))
+    rows = np.random.default_rng(520).normal(size=(RECORDS, 9, CHANNELS * SAMPLES))
+    single = rows.astype(np.float32)
+    whole(rows)
+    whole(single)
+    assert single.dtype == np.float32
+    np.testing.assert_allclose(single, rows, atol=3e-6)
+
+
 def test_errors_of_any_size_are_taken_out_whole() -> None:
     """What is left has the chi2 of directions beside what no error explains."""
     rng = np.random.default_rng(501)

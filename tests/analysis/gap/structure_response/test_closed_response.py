@@ -224,6 +224,29 @@ def test_a_rocking_joint_is_one_of_softer_coupled_bolts() -> None:
     assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
 
 
+@pytest.mark.parametrize("change", sorted(CHANGES))
+def test_the_response_to_many_columns_is_that_to_each_of_them(change: str) -> None:
+    """Sensors are closed where hits are more, and hits where sensors are."""
+    made = campaign()
+    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
+    plain = base_layout(made.bodies, made.nominal)
+    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
+    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+    state = state_of(made.bodies, made.nominal, layout, 0.3 * layout.sd)
+    rocking = 1e-6 * np.outer([-0.1, 0.1, 0.1, -0.1], [-0.1, 0.1, 0.1, -0.1])
+    state = replace(state, **({"rocking": rocking} | CHANGES[change]))
+    bodies = state.bodies_of(made.bodies)
+    sensors = len(state.sensors_of(bodies))
+    rng = np.random.default_rng(520)
+    columns = rng.standard_normal((sensors + 4, bodies.omega.size))
+    s = 150.0 + 2j * np.pi * np.array([40.0, 333.0, 900.0])
+    found = close(bodies, state, s, columns)
+    assert found.shape == (s.size, sensors, sensors + 4)
+    for k in range(len(columns)):
+        one = close(bodies, state, s, columns[k : k + 1])[:, :, 0]
+        assert np.abs(found[:, :, k] - one).max() < 1e-12 * np.abs(one).max()
+
+
 @pytest.mark.parametrize("attached", [(), (Attached(0, 0.4, 500.0, 0.02),)])
 @pytest.mark.parametrize("rigid", [(False, False, False), (True, True, False)])
 def test_slopes_are_those_of_differences(
