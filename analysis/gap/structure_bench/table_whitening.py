@@ -71,10 +71,11 @@ class PointWhitening:
 
         Their products are then in that precision, and sums over records in double.
         """
-        if rows.dtype == self.basis.dtype:
+        if rows.dtype == np.float64:
             return self
-        directions: SlopeArray = self.directions.astype(rows.dtype)
-        basis: SlopeArray = self.basis.astype(rows.dtype)
+        directions, basis = (
+            one.astype(np.float32) for one in (self.directions, self.basis)
+        )
         return replace(self, directions=directions, basis=basis)
 
     @property
@@ -137,8 +138,8 @@ class TableWhitening:
             point = whole.stored_as(rows)
             for first in range(0, rows.shape[1], step):
                 some = slice(first, first + step)
-                part: SlopeArray = np.ascontiguousarray(rows[own, some])
-                block: SlopeArray = part.reshape(*part.shape[:2], *point.directions.shape[2:])
+                part = rows[own, some]
+                block = part.reshape(*part.shape[:2], *point.directions.shape[2:])
                 point.whiten(block)
                 rows[own, some] = part
 
