@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Whatever `gap` is given (campaign, sessions, a long record, a URL), examined."""
+"""Whatever `gap` is given (campaign, sessions, a long record, a URL), examined.
+
+What only one kind of source needs is imported where it is read: all of it together
+takes as long to import as the base of a small structure to fit.
+"""
 
 import tempfile
 from collections.abc import Callable, Sequence
@@ -16,35 +20,14 @@ from jointbench.analysis.gap.catalogue.catalogue import (
     with_real_joints,
 )
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
-from jointbench.analysis.gap.diagnosis.diagnose import diagnose
-from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
-from jointbench.analysis.gap.diagnosis.single_record import (
-    StretchScore,
-    diagnose_record,
-)
-from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.intake.read_hit_campaign import HIT_SCHEMA
-from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import diagnose_contact
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
+from jointbench.analysis.gap.model.stretch_score import StretchScore
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.station.bolted.free_bodies import gap_table
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.gap.contact_section import contact_sections
 from jointbench.station.gap.frf_levels import refuse_frfs
-from jointbench.station.gap.level_files import names_levels, read_levels
-from jointbench.station.gap.level_remarks import level_remarks
-from jointbench.station.gap.loop_section import loop_sections
-from jointbench.station.gap.measured_curves import (
-    curves_of_campaign,
-    curves_of_recordings,
-)
-from jointbench.station.gap.record_campaign import read_record
-from jointbench.station.gap.session_hits import (
-    ANY_LEVEL,
-    judged_recordings,
-    with_preloads,
-)
 from jointbench.station.gap.structure_files import (
     examine_meshed,
     examine_recordings,
@@ -52,20 +35,12 @@ from jointbench.station.gap.structure_files import (
     nominal_beside,
 )
 from jointbench.station.gap.structure_plan import StructurePlan, read_plan
-from jointbench.station.gap.surface_gap import examine_surface
-from jointbench.station.gap.surface_gap_section import surface_gap_sections
-from jointbench.station.joint_states.joint_state_files import (
-    names_states,
-    read_joints,
-)
 from jointbench.station.joints.model_kind import describes_structure
 from jointbench.station.joints.structure_model import StructureModel
-from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.screen.page_parts import Section
 from jointbench.station.sources.open_source import is_url
-from jointbench.station.sources.recorded_session import record_session_file
 
 _RESPONSE_UNITS = ("m", "m/s", "m/s^2")
 Progress = Callable[[str], None]
@@ -159,6 +134,8 @@ def _schema(path: Path) -> str:
 
 def _examine_url(url: str, wanted: GapRequest, progress: Progress) -> Examined:
     """Record a session file from a source, and examine it like any other session."""
+    from jointbench.station.sources.recorded_session import record_session_file
+
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "session.h5"
         progress("recording the session")
@@ -172,6 +149,9 @@ def _examine_named(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
     """Examine the files that a model file names."""
+    from jointbench.station.gap.level_files import names_levels
+    from jointbench.station.joint_states.joint_state_files import names_states
+
     model = paths[0]
     if names_levels(model):
         return _examine_levels(paths, wanted, progress)
@@ -206,6 +186,10 @@ def _examine_levels(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
     """Examine records at several levels, with a base of modes."""
+    from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
+    from jointbench.station.gap.level_files import read_levels
+    from jointbench.station.gap.level_remarks import level_remarks
+
     if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
         raise UsageError(
             f"'{paths[0]}' names its records, ports and base: give it alone"
@@ -233,6 +217,13 @@ def _examine_joint(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
     """Examine a joint over its preload, with a contact law as base."""
+    from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
+        diagnose_contact,
+    )
+    from jointbench.station.gap.contact_section import contact_sections
+    from jointbench.station.gap.loop_section import loop_sections
+    from jointbench.station.joint_states.joint_state_files import read_joints
+
     if wanted.model is not None or wanted.preload is not None:
         raise UsageError(
             f"'{paths[0]}' names its states, facts and contact law: leave --model and "
@@ -261,6 +252,9 @@ def _examine_surface(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
     """Examine heights, with a self-affine surface as base."""
+    from jointbench.station.gap.surface_gap import examine_surface
+    from jointbench.station.gap.surface_gap_section import surface_gap_sections
+
     _refuse_curves(wanted)
     if wanted.extended or wanted.model is not None or wanted.preload is not None:
         raise UsageError(
@@ -281,6 +275,11 @@ def _examine_surface(
 def _examine_campaign(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
+    from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+    from jointbench.analysis.gap.intake.read_campaign import read_campaign
+    from jointbench.station.gap.measured_curves import curves_of_campaign
+    from jointbench.station.gap.session_hits import ANY_LEVEL
+
     if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
         raise UsageError(
             f"'{paths[0]}' is no session: a campaign file is given alone, it brings "
@@ -325,6 +324,9 @@ def _examine_hits(
 def _examine_record(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
+    from jointbench.analysis.gap.diagnosis.single_record import diagnose_record
+    from jointbench.station.gap.record_campaign import read_record
+
     if len(paths) > 1:
         raise UsageError("a record is examined alone; give one MAT file")
     bench = _model(paths[0], wanted)
@@ -353,6 +355,14 @@ def _examine_record(
 def _examine_sessions(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
+    from jointbench.station.gap.measured_curves import curves_of_recordings
+    from jointbench.station.gap.session_hits import (
+        ANY_LEVEL,
+        judged_recordings,
+        with_preloads,
+    )
+    from jointbench.station.pipeline.joint_stages import gap_of
+
     bolted = wanted.model is not None and describes_structure(wanted.model)
     nominal = None if bolted else nominal_parameters(_model(paths[0], wanted))
     sessions = [read_session(path) for path in paths]

@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 
-from jointbench.analysis.gap.diagnosis.single_record import StretchScore
+from jointbench.analysis.gap.model.stretch_score import StretchScore
 from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.value_text import engineering
 

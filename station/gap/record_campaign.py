@@ -8,13 +8,10 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UnitError
 from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.formats.mat_file import read_mat_rows
-from jointbench.analysis.gap.diagnosis.single_record import (
-    SingleRecord,
-    Stretch,
-    StretchScore,
-)
+from jointbench.analysis.gap.diagnosis.single_record import SingleRecord, Stretch
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.model.nominal import NominalParameters
+from jointbench.analysis.gap.model.stretch_score import StretchScore
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.schemas.record_model import RecordTable, StretchTable, stands_in

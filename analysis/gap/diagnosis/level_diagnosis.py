@@ -14,7 +14,6 @@ from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.level_verdict import level_verdict
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.partial_verdict import under_model_error
-from jointbench.analysis.gap.diagnosis.single_record import StretchScore
 from jointbench.analysis.gap.judgement.fit_summaries import (
     deviations_from_priors,
     labels_of_fit,
@@ -38,6 +37,7 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     Gap,
 )
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.model.stretch_score import StretchScore
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect

@@ -15,6 +15,7 @@ from jointbench.analysis.gap.diagnosis.loop import investigate
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.model.nominal import NominalParameters
+from jointbench.analysis.gap.model.stretch_score import StretchScore
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
@@ -69,28 +70,6 @@ class Stretch:
     starts: tuple[int, ...]
     length: int
     lead: int = 1024
-
-
-@dataclass(frozen=True, slots=True)
-class StretchScore:
-    """Prediction error on a stretch that was not used for the fit.
-
-    Attributes:
-        name: of the stretch.
-        rms: of the measured output.
-        before: rms error of the base.
-        after: rms error of the base with the effects found.
-    """
-
-    name: str
-    rms: float
-    before: float
-    after: float
-
-    @property
-    def shrink(self) -> float:
-        """1 - after / before [-]."""
-        return 1.0 - self.after / self.before if self.before > 0 else 0.0
 
 
 def stretch_campaign(
