@@ -149,8 +149,13 @@ def integrated(
         dtype=bool,
     ).reshape(slips.shape)
     held = sizes * k[ports]
-    elastic = k.copy()
-    elastic[ports] -= held
+    elastic, lossy_joint = np.diag(k), np.diag(c)
+    if state.rocking is not None:
+        own = np.ix_(*2 * [np.arange(2, len(k), 3)])
+        coupled = np.linalg.inv(np.linalg.inv(elastic[own]) + state.rocking)
+        elastic[own] = coupled
+        lossy_joint[own] = state.compliance[2] * state.damping[2] * coupled
+    elastic[ports, ports] -= held
     times = np.arange(force.size) / RATE
     spline = scipy.interpolate.CubicSpline(times, force)
 
@@ -163,7 +168,7 @@ def integrated(
 
     def rates(t: float, y: FloatArray, memory: FloatArray) -> FloatArray:
         q, v, bent = y[:n], y[n : 2 * n], y[2 * n :].reshape(slips.shape)
-        joint = elastic * (rows @ q) + c * (rows @ v)
+        joint = elastic @ (rows @ q) + lossy_joint @ (rows @ v)
         bending = np.zeros_like(slips)
         if sliding:
             joint[ports] += held_force(rows[ports] @ q, memory, bent)

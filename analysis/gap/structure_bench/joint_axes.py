@@ -6,7 +6,6 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Site
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
-from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 AXES = ("x", "y")
@@ -14,8 +13,6 @@ AXES = ("x", "y")
 
 def joint_axes(campaign: HitCampaign) -> tuple[Site, ...]:
     """Return the axes of the joint from which bolts lie apart."""
-    if campaign.bodies.rigid[NORMAL]:
-        return ()
     return tuple(
         Site("joint", axis)
         for axis in AXES

@@ -152,7 +152,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
             _rock,
             always=True,
         ),
-        by_frequency=True,
+        yielding=True,
     ),
     StructureEffect(
         Effect(
@@ -175,21 +175,24 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
         _loosen,
         always=True,
     ),
-    one_parameter(
-        "contact_patch",
-        "stiffness",
-        Parameter(
-            "slope",
-            "-",
-            lower=-0.95,
-            upper=0.95,
-            off=0.0,
-            far=(-0.6, -0.3, 0.3, 0.6),
+    replace(
+        one_parameter(
+            "contact_patch",
+            "stiffness",
+            Parameter(
+                "slope",
+                "-",
+                lower=-0.95,
+                upper=0.95,
+                off=0.0,
+                far=(-0.6, -0.3, 0.3, 0.6),
+            ),
+            _COUPLING,
+            joint_axes,
+            _tilt,
+            always=True,
         ),
-        _COUPLING,
-        joint_axes,
-        _tilt,
-        always=True,
+        yielding=True,
     ),
     one_parameter(
         "preload_stiffness",

@@ -9,7 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.model.diagnosis_record import View
-from jointbench.analysis.gap.model.effect import Candidate, Term, may_join
+from jointbench.analysis.gap.model.effect import Candidate, Site, Term, may_join
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
@@ -46,6 +46,7 @@ from jointbench.analysis.gap.structure_response.hit_response import (
     hit_model,
 )
 from jointbench.analysis.gap.structure_response.joint_state import JointState, state_of
+from jointbench.analysis.gap.structure_response.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_response.landing import (
     landing_weights,
     mean_landing,
@@ -224,16 +225,21 @@ class StructureBench:
         """Return whether an effect may be fitted beside others.
 
         Of two laws that are integrated in time, one is sought: each fit of a pair would
-        integrate both for every coordinate.
+        integrate both for every coordinate. What distributes the compliance along the
+        bolts needs one.
         """
-        names = {e.effect.name for e in self.entries if e.by_frequency}
+        along = self.campaign.bodies.rigid[NORMAL] and not any(
+            c.site == Site("joint", "normal") for c in fitted
+        )
+        yielding = {e.effect.name for e in self.entries if e.yielding}
+        if along and candidate.effect.name in yielding:
+            return False
         lonely = {e.effect.name for e in self.entries if e.alone}
         every = (candidate, *fitted)
         if fitted and any(c.effect.name in lonely for c in every):
             return False
-        apart = any(c.effect.name in names for c in every) and self.nonlinear(every)
         two = self.nonlinear((candidate,)) and self.nonlinear(fitted)
-        return may_join(candidate, fitted) and not apart and not two
+        return may_join(candidate, fitted) and not two
 
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""

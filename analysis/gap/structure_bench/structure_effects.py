@@ -30,13 +30,13 @@ class StructureEffect:
         nonlinear: True if it is integrated in time.
         always: True if fits start from it whatever the directed tests find: effects of
             a body or a joint, which a base at its bounds follows, have few sites.
-        by_frequency: True if it is not integrated in time, so that no law that is can
-            be fitted beside it.
         aimed: True if it moves the mark of a point: fits also start at the mean place
             where the hits of the point landed.
         alone: True if it changes the modes, so that no other effect is fitted beside
             it.
         by_torque: True if it acts differently at each torque of the bolts.
+        yielding: True if it distributes what the joint yields along its bolts: where
+            the model holds them rigid, it is fitted beside their compliance alone.
         tolerance: size of its first coordinate within which a sensor is as sensors
             are, so that the effect is not named where the modal table is uncertain.
     """
@@ -46,10 +46,10 @@ class StructureEffect:
     change: Change
     nonlinear: bool = False
     always: bool = False
-    by_frequency: bool = False
     aimed: bool = False
     alone: bool = False
     by_torque: bool = False
+    yielding: bool = False
     tolerance: float = 0.0
 
 

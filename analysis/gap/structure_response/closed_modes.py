@@ -8,7 +8,10 @@ import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.structure_response.joint_state import JointState
-from jointbench.analysis.gap.structure_response.jointed_bodies import JointedBodies
+from jointbench.analysis.gap.structure_response.jointed_bodies import (
+    NORMAL,
+    JointedBodies,
+)
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
@@ -41,10 +44,11 @@ def closed_modes(
         torque: factor of the torque on stiffness and damping of the bolts [-].
 
     Raises:
-        ValueError: the joint rocks, which has no stiffness of its own.
+        ValueError: the joint rocks while its bolts are rigid, which leaves no stiffness
+            between them.
     """
-    if state.rocking is not None:
-        raise ValueError("a rocking compliance is not integrated in time")
+    if state.rocking is not None and state.compliance[NORMAL] == 0.0:
+        raise ValueError("a joint rocks in time about bolts that yield alone")
     m, c, k = mass_damping_stiffness(bodies, state, torque)
     free = free_motions(bodies, state)
     m, c, k = (free.T @ x @ free for x in (m, c, k))
@@ -114,9 +118,10 @@ def mass_damping_stiffness(
         if state.compliance[d] > 0.0:
             own = bodies.row_directions == d
             along = bodies.bolt_rows[own]
-            square = ((state.bolt * torque)[bodies.row_bolts[own]] * along.T) @ along
-            k += square / state.compliance[d]
-            c += square * state.damping[d]
+            stiffness = _between_bolts(state, d, torque)[bodies.row_bolts[own]]
+            square = along.T @ stiffness[:, bodies.row_bolts[own]] @ along
+            k += square
+            c += square * state.compliance[d] * state.damping[d]
     feet = bodies.feet.reshape(-1, omega.size)
     k += (state.foot[0] * np.repeat(state.foot_factor, 3) * feet.T) @ feet
     c += state.foot[1] * feet.T @ feet
@@ -128,6 +133,18 @@ def mass_damping_stiffness(
         m += one.mass * rows.T @ rows
         k += one.stiffness * rows.T @ rows
     return m, c, k
+
+
+def _between_bolts(state: JointState, direction: int, torque: float) -> FloatArray:
+    """Return the stiffness of the bolts in a direction [N/m], (n_bolts, n_bolts).
+
+    Its inverse is what couples them where the joint rocks. It loses as much energy per
+    cycle as the bolts do.
+    """
+    own = state.bolt * torque / state.compliance[direction]
+    if direction != NORMAL or state.rocking is None:
+        return np.diag(own)
+    return np.asarray(np.linalg.inv(np.diag(1.0 / own) + state.rocking))
 
 
 def free_motions(bodies: JointedBodies, state: JointState) -> FloatArray:

@@ -236,15 +236,14 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
     own = whole.chosen(torques_in_turn(whole.campaign.hits))
     near = minimise(make_problem(own, ()), base.x, LONGER, iterations=4)
     own = own.for_tests(near, LONGER)
+    single = [c for c in own.candidates if own.may_add(c, ())]
     if whole.uncertain:
-        others = [c for c in own.candidates if not _tested_from_base(own, c)]
+        others = [c for c in single if not _tested_from_base(own, c)]
         found = screen(own, near, others, resolution=LONGER)
         return found.largest > found.threshold
     aimed = {e.effect.name for e in own.entries if e.aimed}
     linear = [
-        c
-        for c in own.candidates
-        if c.effect.name not in aimed and not own.nonlinear((c,))
+        c for c in single if c.effect.name not in aimed and not own.nonlinear((c,))
     ]
     found = screen(own, near, linear, resolution=LONGER)
     return found.largest > STRUCTURE_SEARCH.taken_share * near.chi2

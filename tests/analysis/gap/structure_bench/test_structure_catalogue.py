@@ -105,19 +105,32 @@ def test_errors_of_a_table_weigh_as_few_numbers(bench: StructureBench) -> None:
     assert known["mass top"] == pytest.approx(np.hypot(0.001, 0.02))
 
 
-def test_what_is_not_integrated_in_time_is_not_paired_with_a_law(
-    bench: StructureBench,
-) -> None:
-    """A joint that rocks goes with a mass, not with micro-slip; nothing goes twice."""
+def test_two_laws_are_not_paired_and_nothing_goes_twice(bench: StructureBench) -> None:
+    """A joint that rocks goes with a mass and with micro-slip."""
     first = {c.effect.name: c for c in reversed(bench.candidates)}
-    rocks, slips, heavy = (
-        first[name] for name in ("joint_compliance_rocking", "microslip", "added_mass")
+    rocks, slips, stops, heavy = (
+        first[name]
+        for name in ("joint_compliance_rocking", "microslip", "clearance", "added_mass")
     )
     assert bench.may_add(heavy, (rocks,))
     assert bench.may_add(slips, (heavy,))
-    assert not bench.may_add(slips, (rocks,))
-    assert not bench.may_add(rocks, (slips,))
+    assert bench.may_add(slips, (rocks,)) and bench.may_add(rocks, (slips,))
+    assert not bench.may_add(stops, (slips,))
     assert not bench.may_add(heavy, (heavy,))
+
+
+def test_a_joint_rocks_about_bolts_that_yield(bench: StructureBench) -> None:
+    """Where the model holds them rigid, beside their compliance alone."""
+    bodies = bench.campaign.bodies
+    stiff = replace(bodies, rigid=np.array([False, False, True]))
+    held = make_structure_bench(replace(bench.campaign, bodies=stiff))
+    first = {c.effect.name: c for c in reversed(held.candidates)}
+    yields, heavy = (first[n] for n in ("joint_compliance_normal", "added_mass"))
+    for name in ("joint_compliance_rocking", "contact_patch"):
+        assert bench.may_add(first[name], ())
+        assert not held.may_add(first[name], ())
+        assert not held.may_add(first[name], (heavy,))
+        assert held.may_add(first[name], (yields,))
 
 
 def _finite(bench: StructureBench, candidate: Candidate, shape: FloatArray) -> bool:

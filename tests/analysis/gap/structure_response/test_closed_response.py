@@ -125,6 +125,19 @@ def test_laws_at_four_bolts_are_those_of_an_integrator(
     assert distance(found, judged(made, replace(linear, laws=(slides, *others)))) < 1e-4
 
 
+def test_a_law_in_a_joint_that_rocks_is_that_of_an_integrator() -> None:
+    """Bolts are coupled by the inverse of their compliance, in time as on lines."""
+    made = campaign()
+    arm = np.array([-0.1, 0.1, 0.1, -0.1])
+    linear = replace(state_at(made), rocking=2e-6 * np.outer(arm, arm))
+    stop = PortLaws((2, 5), 2e7, kind=LawForm.STOP, gap=1e-6)
+    states = [replace(linear, laws=laws) for laws in ((stop,), ())]
+    states.append(replace(states[0], rocking=None))
+    found, free, plain = (model_of(made, state).response()[0] for state in states)
+    assert distance(found, free) > 0.02 and distance(found, plain) > 0.02
+    assert distance(found, judged(made, states[0])) < 1e-4
+
+
 def test_fits_take_coarser_steps_than_what_is_judged() -> None:
     """In fits, friction is within 2e-4 of the peak and other laws within 2e-3."""
     made, weights = campaign(), landing_weights(LANDING)
