@@ -239,8 +239,8 @@ class StructureSearchSettings:
         60_000_000,
         "-",
         "slopes of all records above which memory is given back between two steps",
-        "kept, it saves a tenth of the time and takes 0.2 GB of 1.5 for 45 million "
-        "slopes; fits of twice as many have come near 3 GB without it",
+        "kept, it saves a tenth of the time and takes 0.1 to 0.2 GB beside 1.5 for 45 "
+        "million slopes; the largest benches take 2.5 GB without it",
     )
     whole_cost_ratio: float = numerical(
         3.0,
