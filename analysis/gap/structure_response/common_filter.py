@@ -7,8 +7,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-
-_AT_ONCE = 64  # samples that are kept of one product of matrices
+from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,16 +57,15 @@ class CommonFilter:
             As from a call from sample 0 on, shape (n_kept, n_records).
         """
         taps, count = self.kernel.size, -(-len(values) // self.step)
-        blocks = -(-count // _AT_ONCE)
-        padded = np.zeros(((blocks * _AT_ONCE - 1) * self.step + taps, values.shape[1]))
+        some = STRUCTURE.filtered_at_once
+        blocks = -(-count // some)
+        padded = np.zeros(((blocks * some - 1) * self.step + taps, values.shape[1]))
         before = taps - 1 - self.half
         padded[before : before + len(values)] = values
-        weights = np.zeros((_AT_ONCE, (_AT_ONCE - 1) * self.step + taps))
+        weights = np.zeros((some, (some - 1) * self.step + taps))
         for k, row in enumerate(weights):
             row[k * self.step : k * self.step + taps] = self.kernel[::-1]
-        # A product of matrices is three times as fast as a sum over the taps, though
-        # it has as many zeros as taps.
         windows = sliding_window_view(padded, weights.shape[1], axis=0)
-        windows = windows[:: _AT_ONCE * self.step].transpose(0, 2, 1)
+        windows = windows[:: some * self.step].transpose(0, 2, 1)
         found = (weights @ windows).reshape(-1, values.shape[1])
         return np.asarray(found[:count])

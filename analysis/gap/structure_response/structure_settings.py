@@ -113,6 +113,12 @@ class StructureSettings:
         "640 lines of 12 channels and 41 hits, 32 MB; a flexibility of 200 modes has "
         "70,000 sums at each line",
     )
+    filtered_at_once: int = numerical(
+        64,
+        "samples",
+        "kept samples of one product of matrices that filters forces of laws",
+        "three times as fast as a sum over the taps, with as many zeros as taps",
+    )
     columns_at_once: int = numerical(
         8,
         "columns",
