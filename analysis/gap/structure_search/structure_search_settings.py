@@ -236,11 +236,11 @@ class StructureSearchSettings:
         "most 2.3 typical ones; faulty sensors beyond 1.3 had 3.1 to 40",
     )
     kept_slopes: int = numerical(
-        60_000_000,
+        50_000_000,
         "-",
         "slopes of all records above which memory is given back between two steps",
         "kept, it saves a tenth of the time and takes 0.1 to 0.2 GB beside 1.5 for 45 "
-        "million slopes; the largest benches take 2.5 GB without it",
+        "million slopes; with 52 million and a law it took 2.7 GiB in place of 2.5",
     )
     whole_cost_ratio: float = numerical(
         3.0,
