@@ -9,6 +9,8 @@ from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 
 AXES = ("x", "y")
+ALONG_BOLTS = Site("joint", "normal")
+"""Where a joint yields along its bolts that the model holds rigid."""
 
 
 def joint_axes(campaign: HitCampaign) -> tuple[Site, ...]:

@@ -17,7 +17,11 @@ from jointbench.analysis.gap.structure_bench.bolt_sites import (
     where_rigid,
     with_torques,
 )
-from jointbench.analysis.gap.structure_bench.joint_axes import bolt_arms, joint_axes
+from jointbench.analysis.gap.structure_bench.joint_axes import (
+    ALONG_BOLTS,
+    bolt_arms,
+    joint_axes,
+)
 from jointbench.analysis.gap.structure_bench.structure_effects import (
     Change,
     StructureEffect,
@@ -111,7 +115,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
             _COUPLING,
             report=_stiffness_of("kn"),
         ),
-        where_rigid("normal", (NORMAL,)),
+        where_rigid(ALONG_BOLTS.name, (NORMAL,)),
         _compliant((NORMAL,)),
         always=True,
     ),

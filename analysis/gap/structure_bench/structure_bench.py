@@ -9,7 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.model.diagnosis_record import View
-from jointbench.analysis.gap.model.effect import Candidate, Site, Term, may_join
+from jointbench.analysis.gap.model.effect import Candidate, Term, may_join
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
@@ -21,6 +21,7 @@ from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.residuals.slopes import SlopeArray
+from jointbench.analysis.gap.structure_bench.joint_axes import ALONG_BOLTS
 from jointbench.analysis.gap.structure_bench.law_slopes import LawSlopes
 from jointbench.analysis.gap.structure_bench.record_whitening import RecordWhitening
 from jointbench.analysis.gap.structure_bench.structure_effects import (
@@ -228,18 +229,21 @@ class StructureBench:
         integrate both for every coordinate. What distributes the compliance along the
         bolts needs one.
         """
-        along = self.campaign.bodies.rigid[NORMAL] and not any(
-            c.site == Site("joint", "normal") for c in fitted
-        )
+        yields = any(c.site == ALONG_BOLTS for c in fitted)
         yielding = {e.effect.name for e in self.entries if e.yielding}
-        if along and candidate.effect.name in yielding:
-            return False
+        if self.campaign.bodies.rigid[NORMAL] and not yields:
+            if candidate.effect.name in yielding:
+                return False
         lonely = {e.effect.name for e in self.entries if e.alone}
         every = (candidate, *fitted)
         if fitted and any(c.effect.name in lonely for c in every):
             return False
         two = self.nonlinear((candidate,)) and self.nonlinear(fitted)
         return may_join(candidate, fitted) and not two
+
+    def addable(self, fitted: Sequence[Candidate]) -> list[Candidate]:
+        """Return the catalogue that may be fitted beside others, or beside none."""
+        return [c for c in self.candidates if self.may_add(c, fitted)]
 
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""

@@ -33,7 +33,7 @@ def tested(few: StructureBench, near: Fit) -> Screening:
         few: one record of each condition.
         near: fit in the short window, with or without effects.
     """
-    others = [c for c in few.candidates if few.may_add(c, near.candidates)]
+    others = few.addable(near.candidates)
     return screen(few.for_tests(near, SHORT), near, others, resolution=SHORT)
 
 
@@ -127,7 +127,7 @@ def _chosen(
     as well: a strong one looks like another one there.
     """
     always = {e.effect.name for e in few.entries if e.always}
-    free = [c for c in few.candidates if few.may_add(c, near.candidates)]
+    free = few.addable(near.candidates)
     chosen = [c for c in free if c.effect.name in always or few.hints(near, c)]
     others: list[Candidate] = []
     for c in screening.leaders(len(few.candidates)):

@@ -236,7 +236,7 @@ def one_effect_takes_much(whole: StructureBench, base: Fit) -> bool:
     own = whole.chosen(torques_in_turn(whole.campaign.hits))
     near = minimise(make_problem(own, ()), base.x, LONGER, iterations=4)
     own = own.for_tests(near, LONGER)
-    single = [c for c in own.candidates if own.may_add(c, ())]
+    single = own.addable(())
     if whole.uncertain:
         others = [c for c in single if not _tested_from_base(own, c)]
         found = screen(own, near, others, resolution=LONGER)

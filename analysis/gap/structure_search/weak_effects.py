@@ -124,8 +124,7 @@ def weak_effects(
         return None
     steps = WEAK.iterations
     near = minimise(make_problem(own, ()), start, WINDOW, iterations=steps)
-    single = [c for c in own.candidates if own.may_add(c, ())]
-    weak = [c for c in single if _may_be_weak(own, c)]
+    weak = [c for c in own.addable(()) if _may_be_weak(own, c)]
     tests = screen(own.for_tests(near, WINDOW), near, weak, resolution=WINDOW)
     ended = completed(near)
     found = WeakEffects(few, near.x, beyond_noise(own, ended), ended.cost, tests)

@@ -37,8 +37,6 @@ def test_blocks_between_others_go_back_to_the_system() -> None:
 
 KEPT = """
 import resource
-from contextlib import nullcontext
-import numpy as np
 from jointbench.acquisition.basics.steady_memory import freed_memory_kept
 
 def cleared(rounds):
