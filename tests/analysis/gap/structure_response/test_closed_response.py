@@ -48,6 +48,15 @@ def campaign(rigid: tuple[bool, bool, bool] = (False, False, False)) -> HitCampa
     return HitCampaign("made", random_bodies(rigid=rigid), nominal, smooth_hits())
 
 
+def uncertain_campaign() -> tuple[HitCampaign, BaseLayout]:
+    """Return hits whose modal table is uncertain, with the frequencies left open."""
+    made = campaign()
+    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
+    plain = base_layout(made.bodies, made.nominal)
+    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
+    return made, base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+
+
 def state_at(made: HitCampaign, seed: int = 3) -> JointState:
     """Return a state with all base coordinates moved."""
     layout = base_layout(made.bodies, made.nominal)
@@ -240,11 +249,7 @@ def test_a_rocking_joint_is_one_of_softer_coupled_bolts() -> None:
 @pytest.mark.parametrize("change", sorted(CHANGES))
 def test_the_response_to_many_columns_is_that_to_each_of_them(change: str) -> None:
     """Sensors are closed where hits are more, and hits where sensors are."""
-    made = campaign()
-    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
-    plain = base_layout(made.bodies, made.nominal)
-    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
-    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+    made, layout = uncertain_campaign()
     state = state_of(made.bodies, made.nominal, layout, 0.3 * layout.sd)
     rocking = 1e-6 * np.outer([-0.1, 0.1, 0.1, -0.1], [-0.1, 0.1, 0.1, -0.1])
     state = replace(state, **({"rocking": rocking} | CHANGES[change]))
@@ -299,11 +304,7 @@ def test_a_closed_flexibility_gives_the_response_and_slopes_of_the_closure(
     change: str,
 ) -> None:
     """Attached things are products with it; where joints change it is not taken."""
-    made = campaign()
-    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
-    plain = base_layout(made.bodies, made.nominal)
-    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
-    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+    made, layout = uncertain_campaign()
     start = state_of(made.bodies, made.nominal, layout, 0.3 * layout.sd)
     frame = hit_frame(made.hits, made.hits.force.shape[1])
     flexibility = closed_flexibility(made.bodies, start, frame.s)
@@ -322,11 +323,7 @@ def test_a_closed_flexibility_gives_the_response_and_slopes_of_the_closure(
 
 def test_a_closed_flexibility_is_that_of_its_joints_bodies_and_modes() -> None:
     """Whatever closes them otherwise is not taken from it."""
-    made = campaign()
-    made = replace(made, nominal=replace(made.nominal, table_sd=(0.005, 0.0)))
-    plain = base_layout(made.bodies, made.nominal)
-    nominal = state_of(made.bodies, made.nominal, plain, np.zeros(plain.sd.size))
-    layout = base_layout(made.bodies, made.nominal, tuned_modes(made, nominal))
+    made, layout = uncertain_campaign()
     tuning = layout.at("frequency of mode 1")
     base, moved = np.zeros(layout.sd.size), np.zeros(layout.sd.size)
     moved[tuning] = layout.sd[tuning]
