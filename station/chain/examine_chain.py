@@ -35,7 +35,7 @@ from jointbench.station.chain.read_chain import bolted_joint, read_states
 from jointbench.station.chain.surface_reading import read_surfaces_of_chain
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.gap.gap_inputs import GapRequest
+from jointbench.station.gap.gap_request import GapRequest
 from jointbench.station.joints.model_kind import describes_structure
 from jointbench.station.joints.structure_model import StructureModel
 from jointbench.station.schemas.bench_model import BenchModel

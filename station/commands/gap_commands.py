@@ -140,6 +140,6 @@ def next_command(
         jointbench next joint-stiffness.toml
         jointbench next joint.toml --plan plates.toml --out next.toml
     """
-    from jointbench.station.gap.next_session import run_next
+    from jointbench.station.joint_states.next_session import run_next
 
     run_next(joints, plan=plan, out=out, json_target=json)

@@ -38,7 +38,7 @@ from jointbench.station.files.output_paths import (
     require_mark,
     write_text,
 )
-from jointbench.station.gap.gap_inputs import GapRequest
+from jointbench.station.gap.gap_request import GapRequest
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import DataTable, Section, Text
 from jointbench.station.screen.terminal import console, table, working, write_json

@@ -17,8 +17,9 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     diagnosis_json,
 )
 from jointbench.analysis.gap.response.threads import side_by_side
-from jointbench.station.gap.gap_inputs import GapRequest, examine
+from jointbench.station.gap.gap_inputs import examine
 from jointbench.station.gap.gap_output import show_diagnosis
+from jointbench.station.gap.gap_request import GapRequest
 from jointbench.station.report.gap_report import gap_report
 from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.terminal import console, table

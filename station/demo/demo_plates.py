@@ -25,8 +25,9 @@ from jointbench.station.files.output_paths import (
     check_outputs,
     write_text,
 )
-from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
+from jointbench.station.gap.gap_inputs import examine
 from jointbench.station.gap.gap_output import show_diagnosis
+from jointbench.station.gap.gap_request import Examined, GapRequest
 from jointbench.station.gap.structure_plan import with_structure
 from jointbench.station.report.gap_report import gap_report
 from jointbench.station.screen.page import write_report

@@ -7,7 +7,7 @@ from pathlib import Path
 from jointbench.analysis.gap.catalogue.catalogue import with_real_joints
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
 from jointbench.station.files.typed_values import parse_preload
-from jointbench.station.gap.gap_inputs import GapRequest
+from jointbench.station.gap.gap_request import GapRequest
 from jointbench.station.schemas.effects_file import read_effects, with_own
 
 

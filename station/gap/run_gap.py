@@ -12,9 +12,10 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_
 from jointbench.analysis.gap.response.threads import side_by_side
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.gap.curve_section import curve_section
-from jointbench.station.gap.gap_inputs import Examined, examine
+from jointbench.station.gap.gap_inputs import examine
 from jointbench.station.gap.gap_options import gap_request
 from jointbench.station.gap.gap_output import show_diagnosis
+from jointbench.station.gap.gap_request import Examined
 from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
 from jointbench.station.gap.structure_plan import with_structure
 from jointbench.station.report.gap_report import gap_report

@@ -2,11 +2,13 @@
 """Recordings of sessions with their preloads and judged hits."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, NoHitFound, UsageError
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
+from jointbench.acquisition.session_file.store import read_session
 from jointbench.signal.hits.find_hits import HitCriteria
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.station.pipeline.chain import hits_stage
@@ -16,6 +18,49 @@ from jointbench.station.pipeline.stage_store import StageRun
 ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
 """Levels span 30x on purpose: none is weak but what lies far below the softest of them,
 and the trigger must reach that one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionHits:
+    """What sessions of one bench hold for `gap`.
+
+    Attributes:
+        title: of the sessions, for the report.
+        recordings: with judged hits, in order of time.
+        remarks: what was left out, and why, a line each.
+        simulated: whether a session was.
+    """
+
+    title: str
+    recordings: list[Recording]
+    remarks: tuple[str, ...]
+    simulated: bool
+
+
+def hits_of_sessions(paths: Sequence[Path], preload: float | None) -> SessionHits:
+    """Read sessions, and judge their hits.
+
+    Args:
+        paths: of the sessions.
+        preload: on the joint where they state none [N], or None.
+
+    Raises:
+        UsageError: a recording states another preload.
+        BadData: a file cannot be used, or no recording holds a hit.
+    """
+    sessions = sorted(map(read_session, paths), key=lambda session: session.created)
+    remarks: list[str] = []
+    stored = [pair for session in sessions for pair in with_preloads(session, preload)]
+    recordings = judged_recordings(stored, remarks)
+    if not recordings:
+        names = ", ".join(path.name for path in paths)
+        raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
+    return SessionHits(
+        ", ".join(path.stem for path in paths),
+        recordings,
+        tuple(remarks),
+        any(session.simulated for session in sessions),
+    )
 
 
 def with_preloads(

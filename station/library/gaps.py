@@ -13,8 +13,9 @@ from jointbench.station.chain.chain_report import chain_report
 from jointbench.station.chain.chain_tables import cause_rows, stiffness_rows
 from jointbench.station.chain.chain_words import chain_headline
 from jointbench.station.chain.examine_chain import ExaminedChain, examine_chain
-from jointbench.station.gap.gap_inputs import Examined, examine
+from jointbench.station.gap.gap_inputs import examine
 from jointbench.station.gap.gap_options import gap_request
+from jointbench.station.gap.gap_request import Examined
 from jointbench.station.library.argument_checks import (
     one_path,
     require_lists,

@@ -22,54 +22,81 @@ _Ports = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
 @compiled(fastmath=True)
 def _slide(
-    size: float,
-    sliders: tuple[FloatArray, FloatArray, int],
+    laws: _Laws,
+    scale: FloatArray,
     motion: tuple[FloatArray, FloatArray, FloatArray],
     stretch: tuple[FloatArray, FloatArray],
     d: FloatArray,
 ) -> None:
-    """Write the force of the sliders of one port, and their stretch.
+    """Write the forces of sharp sliders, and their stretch.
 
-    A sharp slider holds up to its limit, then slips. A gradual one follows u' = r' /
-    phi (1 - |u| (|u| + u sgn r') / 2): elastic while it is unloaded, and along tanh
-    (r / phi) while it is loaded, by the addition formula of tanh; the tangent of a
-    step is its Pade approximant, exact to 1e-4 up to a half of phi.
+    They hold up to their limit, then slip.
 
     Args:
-        size: stiffness of all of them [N/m].
-        sliders: slips and weights, shape (n_sliders,) each, sharp ones first, and the
-            number of sharp ones.
-        motion: of the port before and after the step, and scale of the slips, shape
-            (n_hits,) each.
-        stretch: before the step, and after it (written), shape (n_hits, n_sliders);
-            [m], of gradual sliders over their slip displacement.
-        d: force beyond the linear spring (written), shape (n_hits,).
+        laws: of the ports.
+        scale: of the slips, shape (n_ports, n_hits).
+        motion: of the ports before and after the step, and velocity after it.
+        stretch: before the step, and after it (written) [m], shape
+            (n_ports, n_hits, n_sliders).
+        d: forces beyond the linear springs (written), shape (n_ports, n_hits).
     """
-    slips, weights, sharp = sliders
-    old, new, scale = motion
+    kinds, sizes, slips, weights, sharp = laws[0], laws[1], laws[3], laws[4], laws[5]
+    old, new, _ = motion
     before, after = stretch
-    for h in range(d.size):
-        moved, held, own = new[h] - old[h], 0.0, scale[h]
-        for i in range(sharp):
-            limit = own * slips[i]
-            e = min(max(before[h, i] + moved, -limit), limit)
-            after[h, i] = e
-            held += weights[i] * e
-        pace = moved / own
-        for i in range(sharp, slips.size):
-            u, s = before[h, i], pace / slips[i]
-            turned = u * s < 0.0
-            elastic = turned and abs(s) <= abs(u)
-            rest = s + u if turned else s
-            start = 0.0 if turned else u
-            square = rest * rest
-            turn = rest * (15.0 + square) / (15.0 + 6.0 * square)
-            turn = min(max(turn, -1.0), 1.0)
-            loaded = (start + turn) / (1.0 + start * turn)
-            u = rest if elastic else loaded
-            after[h, i] = u
-            held += own * slips[i] * weights[i] * u
-        d[h] = size * (held - new[h])
+    for p in range(d.shape[0]):
+        if kinds[p] != 0:
+            continue
+        for h in range(d.shape[1]):
+            moved, held, own = new[p, h] - old[p, h], 0.0, scale[p, h]
+            for i in range(sharp[p]):
+                limit = own * slips[p, i]
+                e = min(max(before[p, h, i] + moved, -limit), limit)
+                after[p, h, i] = e
+                held += weights[p, i] * e
+            d[p, h] = sizes[p] * (held - new[p, h])
+
+
+@compiled(fastmath=True)
+def _slide_gradually(
+    laws: _Laws,
+    scale: FloatArray,
+    motion: tuple[FloatArray, FloatArray, FloatArray],
+    stretch: tuple[FloatArray, FloatArray],
+    d: FloatArray,
+) -> None:
+    """Add the forces of gradual sliders to those of sharp ones.
+
+    They follow u' = r' / phi (1 - |u| (|u| + u sgn r') / 2): elastic while unloaded,
+    and along tanh (r / phi) while loaded, by the addition formula of tanh; the tangent
+    of a step is its Pade approximant, exact to 1e-4 up to a half of phi.
+
+    Args:
+        laws: of the ports.
+        scale: of the slips, shape (n_ports, n_hits).
+        motion: of the ports before and after the step, and velocity after it.
+        stretch: as of sharp sliders, over the slip displacement.
+        d: forces (changed), shape (n_ports, n_hits).
+    """
+    kinds, sizes, slips, weights, sharp = laws[0], laws[1], laws[3], laws[4], laws[5]
+    old, new, _ = motion
+    before, after = stretch
+    for p in range(d.shape[0]):
+        if kinds[p] != 0:
+            continue
+        for i in range(sharp[p], slips.shape[1]):
+            for h in range(d.shape[1]):
+                limit = scale[p, h] * slips[p, i]
+                step, way = (new[p, h] - old[p, h]) / limit, 1.0
+                if step < 0.0:
+                    way = -1.0
+                u, moved = way * before[p, h, i], way * step
+                rest, start = moved + min(u, 0.0), max(u, 0.0)
+                loading = max(rest, 0.0)
+                square = loading * loading
+                turn = min(loading * (15.0 + square) / (15.0 + 6.0 * square), 1.0)
+                u = way * (min(rest, 0.0) + (start + turn) / (1.0 + start * turn))
+                after[p, h, i] = u
+                d[p, h] += sizes[p] * limit * weights[p, i] * u
 
 
 @compiled(fastmath=True)
@@ -90,26 +117,24 @@ def _port_forces(
             (n_ports, n_hits, n_sliders).
         d: force of each port (written), shape (n_ports, n_hits).
     """
-    kinds, sizes, gaps, slips, weights, sharp = laws
-    old, new, speed = motion
-    before, after = stretch
+    kinds, sizes, gaps = laws[0], laws[1], laws[2]
+    r, v = motion[1], motion[2]
+    _slide(laws, scale, motion, stretch, d)
+    _slide_gradually(laws, scale, motion, stretch, d)
     for p in range(d.shape[0]):
-        size, gap, r, v, out = sizes[p], gaps[p], new[p], speed[p], d[p]
-        if kinds[p] == 0:
-            own = (slips[p], weights[p], sharp[p])
-            _slide(size, own, (old[p], r, scale[p]), (before[p], after[p]), out)
-        elif kinds[p] == 1:
-            for h in range(out.size):
-                out[h] = size * max(r[h] - gap, 0.0)
+        size, gap = sizes[p], gaps[p]
+        if kinds[p] == 1:
+            for h in range(d.shape[1]):
+                d[p, h] = size * max(r[p, h] - gap, 0.0)
         elif kinds[p] == 2:
-            for h in range(out.size):
-                out[h] = size * r[h] * r[h] * r[h]
+            for h in range(d.shape[1]):
+                d[p, h] = size * r[p, h] * r[p, h] * r[p, h]
         elif kinds[p] == 3:
-            for h in range(out.size):
-                out[h] = size * r[h] * r[h]
-        else:
-            for h in range(out.size):
-                out[h] = size * v[h] * abs(v[h])
+            for h in range(d.shape[1]):
+                d[p, h] = size * r[p, h] * r[p, h]
+        elif kinds[p] == 4:
+            for h in range(d.shape[1]):
+                d[p, h] = size * v[p, h] * abs(v[p, h])
 
 
 @compiled(fastmath=True)
@@ -173,13 +198,11 @@ def _propagate(grow: FloatArray, added: FloatArray, x: FloatArray) -> None:
     """
     n_poles = grow.shape[1]
     for j in range(n_poles):
-        c, s = grow[0, j], grow[1, j]
-        real, imag = x[j], x[n_poles + j]
-        up, down = added[j], added[n_poles + j]
-        for h in range(real.size):
-            re, im = real[h], imag[h]
-            real[h] = c * re - s * im + up[h]
-            imag[h] = c * im + s * re + down[h]
+        c, s, k = grow[0, j], grow[1, j], n_poles + j
+        for h in range(x.shape[1]):
+            re, im = x[j, h], x[k, h]
+            x[j, h] = c * re - s * im + added[j, h]
+            x[k, h] = c * im + s * re + added[k, h]
 
 
 @compiled(fastmath=True)
@@ -245,13 +268,12 @@ def _respond(
         new: motion (written), same shape.
     """
     for p in range(d.shape[0]):
-        out, moved = new[p], base[p]
-        for h in range(out.size):
-            out[h] = moved[h]
+        for h in range(d.shape[1]):
+            new[p, h] = base[p, h]
         for q in range(d.shape[0]):
-            factor, force = instant[p, q], d[q]
-            for h in range(out.size):
-                out[h] += factor * force[h]
+            factor = instant[p, q]
+            for h in range(d.shape[1]):
+                new[p, h] += factor * d[q, h]
 
 
 @compiled(fastmath=True)

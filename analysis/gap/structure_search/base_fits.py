@@ -4,6 +4,7 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
@@ -11,6 +12,8 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
@@ -19,7 +22,6 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
     approached,
     chi2_per_dof,
     settled,
-    with_errors_found,
 )
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
@@ -67,3 +69,33 @@ def base_in_whole_records(
         return settled(bench, x, (), near=True)
     whole = bench.at(x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
+
+
+def with_errors_found(layout: BaseLayout, base: Fit, *, explains: bool) -> BaseLayout:
+    """Return the base coordinates with frequencies as uncertain as the base shows.
+
+    The stated sd of the frequencies of a table is a guess of one size for all of them.
+    Where their median deviation is larger, an effect that shifts many modes would be
+    named for it. The deviations of a base that explains the records are all due to the
+    table, so their rms counts: of twenty modes, one is often off by three sd.
+
+    Args:
+        layout: as stated.
+        base: fit without effects.
+        explains: whether it explains the records.
+    """
+    if layout.tuned is None:
+        return layout
+    own = np.array([layout.at(name) for name in layout.tuned.names], dtype=np.int64)
+    alone = own[: layout.tuned.omega.size]
+    free = alone[layout.sd[alone] > MODAL_TABLE.open_frequency]
+    if not free.size:
+        return layout
+    deviations = np.abs(base.prior_deviations[free])
+    # The median of the absolute value of a normal variable is its upper quartile.
+    found = float(np.median(deviations) / ndtri(0.75))
+    if explains:
+        found = max(found, float(np.sqrt(np.mean(deviations**2))))
+    sd = layout.sd.copy()
+    sd[own] *= float(np.clip(found, 1.0, MODAL_TABLE.largest_size))
+    return replace(layout, sd=sd)

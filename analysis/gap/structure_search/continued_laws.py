@@ -74,6 +74,28 @@ def continued(
     return None
 
 
+def one_of_each_law(fits: Sequence[Fit]) -> list[Fit]:
+    """Return fits without those whose law continues that of one before, at its sites.
+
+    A second effect beside both would be sought beside one law twice.
+
+    Args:
+        fits: best first.
+    """
+    kept: list[Fit] = []
+    for fit in fits:
+        if not any(_one_law(fit, other) for other in kept):
+            kept.append(fit)
+    return kept
+
+
+def _one_law(fit: Fit, other: Fit) -> bool:
+    """Return whether all effects of two fits are sliders, at the same sites."""
+    both = (*fit.candidates, *other.candidates)
+    same = [c.site for c in fit.candidates] == [c.site for c in other.candidates]
+    return same and all(c.effect.has_sliders for c in both)
+
+
 def _beyond(term: Term, other: Candidate) -> bool:
     """Return whether a law of sliders begins where the shape of a term ended."""
     own = term.candidate

@@ -33,10 +33,9 @@ def accept_structure(
     """
     dof = bench.blocks.dof / bench.coherence
     chi2 = fit.chi2 / dof
-    policy = bench.policy
-    allowed = policy.floor_chi2
+    policy, allowed = bench.policy, bench.policy.floor_chi2
     if fit.candidates:
-        allowed += policy.floor_chi2_share * max(base.chi2 / dof - 1.0, 0.0)
+        allowed = allowed_chi2(bench, base)
     deviations = np.abs(fit.prior_deviations)
     deviation = float(deviations.max())
     reason = ""
@@ -63,6 +62,18 @@ def accept_structure(
         unexplained=bool(reason),
         left=None,
     )
+
+
+def allowed_chi2(bench: StructureBench, base: Fit) -> float:
+    """Return the limit of chi2/dof of a fit with effects.
+
+    Args:
+        bench: all records.
+        base: fit of them without effects.
+    """
+    policy, dof = bench.policy, bench.blocks.dof / bench.coherence
+    excess = max(base.chi2 / dof - 1.0, 0.0)
+    return policy.floor_chi2 + policy.floor_chi2_share * excess
 
 
 def _no_linear_structure(bench: StructureBench, fit: Fit) -> str:

@@ -10,7 +10,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.special import ndtri
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate
@@ -30,9 +29,7 @@ from jointbench.analysis.gap.search.descent import (
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
-from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
-from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
@@ -84,36 +81,6 @@ def in_full(
 ) -> tuple[StructureBench, Fit]:
     """Fit one record of each condition whole, from a fit in windows."""
     return _settled_in(few, start, candidates, FULL)
-
-
-def with_errors_found(layout: BaseLayout, base: Fit, *, explains: bool) -> BaseLayout:
-    """Return the base coordinates with frequencies as uncertain as the base shows.
-
-    The stated sd of the frequencies of a table is a guess of one size for all of them.
-    Where their median deviation is larger, an effect that shifts many modes would be
-    named for it. The deviations of a base that explains the records are all due to the
-    table, so their rms counts: of twenty modes, one is often off by three sd.
-
-    Args:
-        layout: as stated.
-        base: fit without effects.
-        explains: whether it explains the records.
-    """
-    if layout.tuned is None:
-        return layout
-    own = np.array([layout.at(name) for name in layout.tuned.names], dtype=np.int64)
-    alone = own[: layout.tuned.omega.size]
-    free = alone[layout.sd[alone] > MODAL_TABLE.open_frequency]
-    if not free.size:
-        return layout
-    deviations = np.abs(base.prior_deviations[free])
-    # The median of the absolute value of a normal variable is its upper quartile.
-    found = float(np.median(deviations) / ndtri(0.75))
-    if explains:
-        found = max(found, float(np.sqrt(np.mean(deviations**2))))
-    sd = layout.sd.copy()
-    sd[own] *= float(np.clip(found, 1.0, MODAL_TABLE.largest_size))
-    return replace(layout, sd=sd)
 
 
 def chi2_per_dof(bench: StructureBench, fit: Fit) -> float:
@@ -233,7 +200,7 @@ def settled(
         rival: cost that is to be reached; a fit that would need very many more steps
             is left where it is, and its slopes are those of the step before.
     """
-    bench = _met(bench, start, candidates, near=near)
+    bench = _landed(bench, start, candidates, near=near)
     fit = _whole(bench, start, candidates, rival=rival)
     for _ in range(STRUCTURE_SEARCH.settling_rounds):
         landing, before = bench.landing, fit.cost
@@ -262,7 +229,21 @@ def settled(
     return bench, fitted_finely(bench, fit.x, candidates, steps, given)
 
 
-def _met(
+def met_at(
+    bench: StructureBench, start: FloatArray, candidates: Sequence[Candidate]
+) -> tuple[StructureBench, Fit]:
+    """Return the fit of all whole records at a start, each hit met where it landed.
+
+    Args:
+        bench: all records.
+        start: base coordinates, then those of the effects.
+        candidates: effects.
+    """
+    bench = _landed(bench, start, candidates, near=True)
+    return bench, fitted_finely(bench, start, candidates, steps=0)
+
+
+def _landed(
     bench: StructureBench,
     start: FloatArray,
     candidates: Sequence[Candidate],

@@ -36,6 +36,7 @@ from jointbench.analysis.gap.structure_search.base_fits import (
     base_in_whole_records,
     base_in_windows,
 )
+from jointbench.analysis.gap.structure_search.continued_laws import one_of_each_law
 from jointbench.analysis.gap.structure_search.differences_from_base import (
     differences_from_base,
     differs,
@@ -85,6 +86,7 @@ from jointbench.analysis.gap.structure_search.weak_effects import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     best_first,
+    far_beyond_limit,
     in_whole_records,
     leaves_much,
 )
@@ -212,6 +214,8 @@ def _searched(
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
         pairs = _with_a_second(few, singles, progress)
+        if far_beyond_limit(done[0]):
+            pairs = that_take(pairs, singles)
         two = in_whole_records(bench, few, base, pairs, progress)
         if two and (one := alone(bench, base, two[0])):
             done = [one]
@@ -301,7 +305,7 @@ def _with_a_second(
 ) -> list[Fit]:
     """Add a second effect to the best single ones, in short windows, best first."""
     pairs: list[Fit] = []
-    for first in singles[: STRUCTURE_SEARCH.first_effects]:
+    for first in one_of_each_law(singles)[: STRUCTURE_SEARCH.first_effects]:
         own = few.at(first.base, first.terms, few.landing, few.floor)
         problem = make_problem(own, first.candidates)
         progress(f"directed tests beside {words_of(first.candidates)}")
@@ -311,6 +315,20 @@ def _with_a_second(
         pairs += carried(own, near, tested(own, near), progress)
     different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
     return affordable(few, _best_first(few, list(different.values())))
+
+
+def that_take(pairs: Sequence[Fit], singles: Sequence[Fit]) -> list[Fit]:
+    """Return pairs that take a good part of what single effects leave there.
+
+    Beside a law that leaves many times its limit, a second effect that is missing takes
+    most of it; others would be fitted to whole records for nothing.
+
+    Args:
+        pairs: fits in the longer window.
+        singles: fits there of single effects.
+    """
+    left = min(fit.cost for fit in singles)
+    return [f for f in pairs if f.cost < (1.0 - STRUCTURE_SEARCH.taken_share) * left]
 
 
 def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:

@@ -71,6 +71,13 @@ class StructureSearchSettings:
         "landed, above which it is not fitted to all records",
         "far above the limit of a verdict",
     )
+    far_beyond: float = numerical(
+        1.3,
+        "of the limit",
+        "chi2/dof of a law in one record of each condition, each met where it landed, "
+        "above which it is not fitted to all records",
+        "Bouc-Wen friction that left 11.05 there left 11.73 of all records (781071)",
+    )
     approach_windows: tuple[float, ...] = numerical(
         (0.02, 0.06),
         "s",

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
 from jointbench.analysis.gap.residuals.fit_records import (
@@ -24,10 +23,13 @@ from jointbench.analysis.gap.structure_search.sought_frequencies import (
 )
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
+    allowed_chi2,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import (
+    chi2_per_dof,
     in_full,
     in_windows,
+    met_at,
     near_records,
     settled,
 )
@@ -95,25 +97,53 @@ def in_whole_records(
         progress(f"{words_of(fit.candidates)} in all records")
         # Slopes of all records are the largest array there is.
         done[:1] = [at_rest(one) for one in done[:1]]
-        whole = replace(bench, layout=own.layout)
-        near_it = near_records(own, fit)
-        done.append(_settled_and_judged(whole, fit.x, fit.candidates, base, near_it))
-        del whole
-        done = best_first(done)
+        done = best_first([*done, _in_all_records(bench, own, fit, base)])
     done = _beyond_bounds(done, base, progress)
     return [at_rest(one) for one in best_first([*done, *judged])]
 
 
-def _settled_and_judged(
-    bench: StructureBench,
-    start: FloatArray,
-    candidates: Sequence[Candidate],
-    base: Fit,
-    near: bool,
+def _in_all_records(
+    bench: StructureBench, few: StructureBench, near: Fit, base: Fit
 ) -> JudgedFit:
-    """Fit all records from a start, near it or not, and judge the fit."""
-    whole, fit = settled(bench, start, candidates, near=near)
-    return JudgedFit(whole.at_rest(), fit, accept_structure(whole, fit, base))
+    """Fit all records from a fit to one of each condition, and judge the fit.
+
+    A law that is far beyond its limit there explains all records no better. Each hit is
+    met where it landed, but no step is made: a step of a law takes seconds.
+
+    Args:
+        bench: all records.
+        few: one record of each condition.
+        near: fit to these.
+        base: fit to all records without effects.
+    """
+    whole = replace(bench, layout=few.layout)
+    if _law_far_beyond(few, near, allowed_chi2(bench, base)):
+        whole, fit = met_at(whole, near.x, near.candidates)
+    else:
+        near_it = near_records(few, near)
+        whole, fit = settled(whole, near.x, near.candidates, near=near_it)
+    return _judged(whole, fit, base)
+
+
+def far_beyond_limit(judged: JudgedFit) -> bool:
+    """Return whether a fit with a law leaves far more than its limit of chi2/dof.
+
+    Args:
+        judged: fit to all records.
+    """
+    allowed = judged.acceptance.allowed + 1.0
+    return _law_far_beyond(judged.bench, judged.fit, allowed)
+
+
+def _law_far_beyond(bench: StructureBench, fit: Fit, allowed: float) -> bool:
+    """Return whether a fit with a law leaves far more than its limit of chi2/dof."""
+    far = STRUCTURE_SEARCH.far_beyond * allowed
+    return bench.nonlinear(fit.candidates) and chi2_per_dof(bench, fit) > far
+
+
+def _judged(bench: StructureBench, fit: Fit, base: Fit) -> JudgedFit:
+    """Judge a fit to all records beside their base."""
+    return JudgedFit(bench.at_rest(), fit, accept_structure(bench, fit, base))
 
 
 def _beyond_bounds(
@@ -121,7 +151,8 @@ def _beyond_bounds(
 ) -> list[JudgedFit]:
     """Return fits with the law beyond the bound at which the best one ended.
 
-    In windows either law may be the better one; all records decide.
+    In windows either law may be the better one; all records decide, unless the best one
+    is far beyond its limit.
 
     Args:
         done: fits to all records, best first.
@@ -131,11 +162,14 @@ def _beyond_bounds(
     start = continued(done[0].bench, done[0].fit) if done else None
     if start is None:
         return done
+    best = done[0]
+    if far_beyond_limit(best):
+        return done
     candidates, x = start
     progress(f"{words_of(candidates)} in all records")
     rest = [at_rest(one) for one in done]
-    further = _settled_and_judged(done[0].bench, x, candidates, base, near=True)
-    return best_first([*rest, further])
+    bench, fit = settled(best.bench, x, candidates, near=True, rival=best.fit.cost)
+    return best_first([*rest, _judged(bench, fit, base)])
 
 
 def _from_other_frequencies(near: Sequence[_Found], progress: Progress) -> list[_Found]:
@@ -220,17 +254,26 @@ def _met_in_windows(
         own, start = retuned(few, fit.x, fit.candidates)
         # A linear fit costs little, and its first steps mislead about where it ends.
         law = own.nonlinear(fit.candidates)
-        own, met = in_windows(own, start, fit.candidates, rival=rival if law else None)
-        if further := continued(own, met):
+        own, here = in_windows(own, start, fit.candidates, rival=rival if law else None)
+        rival = min(_cost_per_row(here), rival or np.inf)
+        further = continued(own, here)
+        if further and not any(_is_better(one, further[0], here) for one in found):
             progress(f"{words_of(further[0])} where hits landed")
-            beyond, other = in_windows(own, further[1], further[0])
-            if _cost_per_row(other) < _cost_per_row(met):
-                own, met = beyond, other
-        rival = min(_cost_per_row(met), rival or np.inf)
-        found.append((own, without_slopes(met)))
+            beyond, other = in_windows(own, further[1], further[0], rival=rival)
+            if _cost_per_row(other) < _cost_per_row(here):
+                own, here = beyond, other
+                rival = min(_cost_per_row(here), rival)
+        found.append((own, without_slopes(here)))
     found.sort(key=lambda one: _cost_per_row(one[1]))
     best = {labels_of(fit.candidates): (own, fit) for own, fit in reversed(found)}
     return sorted(best.values(), key=lambda one: _cost_per_row(one[1]))
+
+
+def _is_better(found: _Found, candidates: Sequence[Candidate], fit: Fit) -> bool:
+    """Return whether other effects have a fit already, and a better one than these."""
+    known = found[1]
+    same = known.candidates == tuple(candidates)
+    return same and _cost_per_row(known) < _cost_per_row(fit)
 
 
 def _cost_per_row(fit: Fit) -> float:

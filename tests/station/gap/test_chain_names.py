@@ -6,7 +6,7 @@ import pytest
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.chain.examine_chain import examine_chain
-from jointbench.station.gap.gap_inputs import GapRequest
+from jointbench.station.gap.gap_request import GapRequest
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "campaign" / "bench.toml"
 TABLE = """

@@ -10,7 +10,8 @@ import pytest
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.station.examples.example_sets import write_example
-from jointbench.station.gap.gap_inputs import GapRequest, examine
+from jointbench.station.gap.gap_inputs import examine
+from jointbench.station.gap.gap_request import GapRequest
 from jointbench.station.joint_states.joint_state_files import (
     names_states,
     read_joint,

@@ -7,7 +7,8 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import JointbenchError, SamplingError
-from jointbench.station.gap.gap_inputs import GapRequest, examine
+from jointbench.station.gap.gap_inputs import examine
+from jointbench.station.gap.gap_request import GapRequest
 from jointbench.station.gap.level_files import names_levels, read_levels
 
 RATE, SAMPLES = 200.0, 1024

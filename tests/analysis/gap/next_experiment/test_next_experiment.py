@@ -19,8 +19,8 @@ from jointbench.analysis.gap.next_experiment.contact_series import (
     with_series,
 )
 from jointbench.analysis.gap.search.screening import screen
-from jointbench.station.gap.next_plan import plan_text, write_plan
-from jointbench.station.gap.next_session import run_next
+from jointbench.station.joint_states.next_plan import plan_text, write_plan
+from jointbench.station.joint_states.next_session import run_next
 from jointbench.station.measure.plan import read_plan
 
 PLATES = Path(__file__).parents[4] / "examples" / "plates.toml"

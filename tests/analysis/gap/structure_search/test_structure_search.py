@@ -28,6 +28,7 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.landing import mark_missed
 from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
+from jointbench.analysis.gap.structure_search.base_fits import with_errors_found
 from jointbench.analysis.gap.structure_search.continued_laws import with_continued
 from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
@@ -47,7 +48,6 @@ from jointbench.analysis.gap.structure_search.structure_diagnosis import (
 from jointbench.analysis.gap.structure_search.structure_fits import (
     in_windows,
     settled,
-    with_errors_found,
 )
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import (

@@ -11,8 +11,8 @@ from jointbench.analysis.gap.law_diagnosis.contact_diagnosis import (
 )
 from jointbench.analysis.gap.next_experiment.contact_series import torque_series
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.gap.next_plan import write_plan
 from jointbench.station.joint_states.joint_state_files import read_joints
+from jointbench.station.joint_states.next_plan import write_plan
 from jointbench.station.screen.terminal import console, table, write_json
 
 _COLUMNS = ("experiment", "minutes", "gain of probability", "per hour", "decides")
