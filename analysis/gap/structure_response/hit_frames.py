@@ -76,9 +76,7 @@ def hit_frame(hits: HitRecords, count: int) -> HitFrame:
         hits: filtered records.
         count: samples in the window.
     """
-    share, least = STRUCTURE.padding
-    padded = count + max(int(share * count), least)
-    size = int(scipy.fft.next_fast_len(padded, real=True))
+    size = int(scipy.fft.next_fast_len(count + _room(hits, count), real=True))
     decay = STRUCTURE.line_damping * hits.sample_rate / size
     growth = np.exp(decay * np.arange(size) / hits.sample_rate)
     frequency = np.fft.rfftfreq(size, 1.0 / hits.sample_rate)
@@ -91,3 +89,16 @@ def hit_frame(hits: HitRecords, count: int) -> HitFrame:
         np.asarray(force[:, : frequency.size]),
         growth,
     )
+
+
+def _room(hits: HitRecords, count: int) -> int:
+    """Return the samples of a transform beyond its window.
+
+    A filter ends what responses have before the hit, and the end of a short window is
+    early on the damped line: what wraps around grows little there.
+    """
+    share, most = STRUCTURE.padding
+    least = most
+    if hits.filter.half:
+        least = min(max(count, STRUCTURE.short_padding), most)
+    return max(int(share * count), least)

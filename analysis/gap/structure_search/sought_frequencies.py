@@ -15,6 +15,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_search.records_of_search import hardest
 from jointbench.analysis.gap.structure_search.structure_fits import (
     approached,
     chi2_per_dof,
@@ -55,6 +56,8 @@ def sought(few: StructureBench, fit: Fit) -> FloatArray | None:
     tuned = few.layout.tuned
     if tuned is None:
         return None
+    # Bodies and joints of a fit without laws are the same at all levels.
+    few = few.chosen(hardest(few.campaign.hits, STRUCTURE_SEARCH.sought_levels))
     window = STRUCTURE_SEARCH.approach_windows[0]
     # Priors would draw a frequency back; the fit that follows weighs them.
     free = np.zeros(fit.x.size)

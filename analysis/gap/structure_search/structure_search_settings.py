@@ -23,6 +23,9 @@ class StructureSearchSettings:
         "how far it is sought to either side",
         "tables that are off by 1 % have one of twenty modes off by 3",
     )
+    sought_levels: int = numerical(
+        2, "levels", "highest levels of each point in whose hits it is sought"
+    )
     sought_share: float = numerical(
         0.02,
         "of the cost",
