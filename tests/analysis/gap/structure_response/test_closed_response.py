@@ -19,6 +19,7 @@ from jointbench.analysis.gap.structure_response.closed_flexibility import (
     closed_flexibility,
 )
 from jointbench.analysis.gap.structure_response.closed_response import close
+from jointbench.analysis.gap.structure_response.common_filter import CommonFilter
 from jointbench.analysis.gap.structure_response.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_response.hit_frames import hit_frame
 from jointbench.analysis.gap.structure_response.hit_response import HitModel, hit_model
@@ -99,6 +100,19 @@ def test_the_linear_response_is_that_of_an_integrator() -> None:
     state = state_at(made)
     found = model_of(made, state).response()[0]
     assert distance(found, judged(made, state)) < 1e-4
+
+
+def test_a_short_window_is_the_begin_of_the_whole_record() -> None:
+    """A window needs less room after it, where a filter ends what is before the hit."""
+    made = campaign()
+    state = state_at(made)
+    whole, count = model_of(made, state).response()[0], 60
+    frame = hit_frame(made.hits, count)
+    early = hit_model(made, state, frame, landing_weights(LANDING)).response()[0]
+    apart = np.abs(early - whole[:, :count]).max()
+    assert apart < 1e-3 * np.abs(whole[:, :count]).max()
+    plain = replace(made.hits, filter=CommonFilter(np.ones(1), 1))
+    assert frame.size < hit_frame(plain, count).size
 
 
 FOUR_LAWS = (
