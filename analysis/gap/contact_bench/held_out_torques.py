@@ -12,7 +12,8 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.slopes import curvature
-from jointbench.analysis.gap.search.descent import jacobian_of, minimise
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.jacobian import jacobian_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)

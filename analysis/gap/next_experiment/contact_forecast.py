@@ -28,7 +28,7 @@ from jointbench.analysis.gap.next_experiment.ranked_experiment import (
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, split
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
-from jointbench.analysis.gap.search.descent import jacobian_of
+from jointbench.analysis.gap.search.jacobian import jacobian_of
 from jointbench.analysis.gap.search.selection_round import score
 
 

@@ -15,7 +15,7 @@ from jointbench.analysis.gap.response.search_effort import (
     limited,
 )
 from jointbench.analysis.gap.response.threads import each, side_by_side
-from jointbench.analysis.gap.search.descent import jacobian_of
+from jointbench.analysis.gap.search.jacobian import jacobian_of
 
 SLIDER = ("jenkins", "link:joint", [8e5, 4e-6, 11.0])
 
