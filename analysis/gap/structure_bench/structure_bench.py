@@ -386,22 +386,16 @@ class StructureBench:
 
     def chosen(self, records: IntArray) -> "StructureBench":
         """Return the bench of some of its records."""
-        hits = self.campaign.hits
-        names = ("force", "response", "noise", "point", "torque", "level", "raw_force")
-        few = replace(
-            hits,
-            names=tuple(hits.names[k] for k in records),
-            **{name: getattr(hits, name)[records] for name in names},
-        )
+        campaign = replace(self.campaign, hits=self.campaign.hits.chosen(records))
         return replace(
             self,
-            campaign=replace(self.campaign, hits=few),
+            campaign=campaign,
             landing=self.landing[records],
             sigma=self.sigma[records],
             directions=None if self.directions is None else self.directions[records],
             errors=None if self.errors is None else self.errors.chosen(records),
             bodies=None if self.bodies is None else self.bodies[records],
-            blocks=record_blocks(replace(self.campaign, hits=few)),
+            blocks=record_blocks(campaign),
             kept={},
         )
 

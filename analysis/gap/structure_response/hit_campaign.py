@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Filtered hits on bolted bodies, and the hits that were left out."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -79,6 +79,19 @@ class HitRecords:
     def of_points(self) -> tuple[IntArray, ...]:
         """Records of each point that was hit."""
         return tuple(np.flatnonzero(self.point == one) for one in np.unique(self.point))
+
+    def chosen(self, records: IntArray) -> "HitRecords":
+        """Return some of the records.
+
+        Args:
+            records: which, shape (n,).
+        """
+        names = ("force", "response", "noise", "point", "torque", "level", "raw_force")
+        return replace(
+            self,
+            names=tuple(self.names[k] for k in records),
+            **{name: getattr(self, name)[records] for name in names},
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
