@@ -20,23 +20,21 @@ from jointbench.acquisition.basics.steady_memory import (
     return_freed_memory,
 )
 from jointbench.analysis.gap.judgement.amplitudes import (
-    amplitude_sizes,
     base_without,
     weakest_amplitude,
 )
-from jointbench.analysis.gap.model.effect import Candidate, labels_of, words_of
+from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen
-from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.base_fits import (
     base_in_whole_records,
     base_in_windows,
 )
-from jointbench.analysis.gap.structure_search.continued_laws import one_of_each_law
 from jointbench.analysis.gap.structure_search.differences_from_base import (
     differences_from_base,
     differs,
@@ -49,6 +47,7 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
+from jointbench.analysis.gap.structure_search.second_effects import second_effects
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
     of_table,
     sensors_from_base,
@@ -86,7 +85,6 @@ from jointbench.analysis.gap.structure_search.weak_effects import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     best_first,
-    far_beyond_limit,
     in_whole_records,
     leaves_much,
 )
@@ -213,14 +211,8 @@ def _searched(
             return complete
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
-        pairs = _with_a_second(few, singles, progress)
-        if far_beyond_limit(done[0]):
-            pairs = that_take(pairs, singles)
-        two = in_whole_records(bench, few, base, pairs, progress)
-        if two and (one := alone(bench, base, two[0])):
-            done = [one]
-        elif two and two[0].acceptance.passed and _both_matter(two[0]):
-            done = two
+        two = second_effects(bench, few, base, singles, done[0], progress)
+        return found.judged(two or done, screening)
     return found.judged(done, screening)
 
 
@@ -277,75 +269,6 @@ def takes(bench: StructureBench, fit: Fit, base: Fit) -> bool:
 def _needed(one: JudgedFit, base: Fit) -> bool:
     """Return whether a fit is accepted, and takes enough beside an accepted base."""
     return one.acceptance.passed and takes(one.bench, one.fit, base)
-
-
-def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None:
-    """Return the accepted fit of a single effect to which a pair led, if it did.
-
-    Where the second effect of a pair is nearly off, it was a further start for the
-    first.
-
-    Args:
-        bench: all records.
-        base: fit without effects.
-        pair: fit of two effects.
-    """
-    sizes = amplitude_sizes(with_covariance(pair.bench, pair.fit))
-    if not pair.acceptance.passed or min(sizes) >= STRUCTURE_SEARCH.plain_amplitude:
-        return None
-    kept = pair.fit.terms[int(np.argmax(sizes))]
-    start = np.concatenate([pair.fit.base, kept.coordinates])
-    own, fit = settled(bench, start, (kept.candidate,), near=True)
-    judged = JudgedFit(own, fit, accept_structure(own, fit, base))
-    return judged if judged.acceptance.passed else None
-
-
-def _with_a_second(
-    few: StructureBench, singles: Sequence[Fit], progress: Progress
-) -> list[Fit]:
-    """Add a second effect to the best single ones, in short windows, best first."""
-    pairs: list[Fit] = []
-    for first in one_of_each_law(singles)[: STRUCTURE_SEARCH.first_effects]:
-        own = few.at(first.base, first.terms, few.landing, few.floor)
-        problem = make_problem(own, first.candidates)
-        progress(f"directed tests beside {words_of(first.candidates)}")
-        near = minimise(
-            problem, first.x, SHORT, iterations=STRUCTURE_SEARCH.short_iterations
-        )
-        pairs += carried(own, near, tested(own, near), progress)
-    different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
-    return affordable(few, _best_first(few, list(different.values())))
-
-
-def that_take(pairs: Sequence[Fit], singles: Sequence[Fit]) -> list[Fit]:
-    """Return pairs that take a good part of what single effects leave there.
-
-    Beside a law that leaves many times its limit, a second effect that is missing takes
-    most of it; others would be fitted to whole records for nothing.
-
-    Args:
-        pairs: fits in the longer window.
-        singles: fits there of single effects.
-    """
-    left = min(fit.cost for fit in singles)
-    return [f for f in pairs if f.cost < (1.0 - STRUCTURE_SEARCH.taken_share) * left]
-
-
-def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:
-    """Return pairs for whole records: few with a law, which is integrated there."""
-    laws = [f for f in pairs if few.nonlinear(f.candidates)]
-    left = laws[STRUCTURE_SEARCH.law_pairs :]
-    return [f for f in pairs if all(f is not one for one in left)]
-
-
-def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:
-    return sorted(fits, key=lambda f: score(few, f))
-
-
-def _both_matter(judged: JudgedFit) -> bool:
-    """Return whether each effect of a pair is clearly on."""
-    amplitude = weakest_amplitude(with_covariance(judged.bench, judged.fit))
-    return amplitude >= judged.bench.policy.amplitude_limit
 
 
 def _needed_by_few(best: JudgedFit, start: FloatArray) -> bool:

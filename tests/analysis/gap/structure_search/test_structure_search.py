@@ -34,6 +34,7 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
+from jointbench.analysis.gap.structure_search.second_effects import affordable, alone
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
@@ -52,8 +53,6 @@ from jointbench.analysis.gap.structure_search.structure_fits import (
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import (
     UNTESTED,
-    affordable,
-    alone,
     needless,
     one_effect_takes_much,
     takes,

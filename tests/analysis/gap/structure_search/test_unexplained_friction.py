@@ -9,13 +9,13 @@ import pytest
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.structure_search.continued_laws import one_of_each_law
+from jointbench.analysis.gap.structure_search.second_effects import that_take
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
     allowed_chi2,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import met_at, settled
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
-from jointbench.analysis.gap.structure_search.structure_search import that_take
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     far_beyond_limit,

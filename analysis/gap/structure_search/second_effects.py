@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""A second effect beside the best single ones, where none explains the hits."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.analysis.gap.judgement.amplitudes import (
+    amplitude_sizes,
+    weakest_amplitude,
+)
+from jointbench.analysis.gap.model.effect import labels_of, words_of
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.selection_round import Progress, score
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_search.continued_laws import one_of_each_law
+from jointbench.analysis.gap.structure_search.short_windows import (
+    SHORT,
+    carried,
+    tested,
+)
+from jointbench.analysis.gap.structure_search.slopes_again import with_covariance
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import (
+    chi2_per_dof,
+    settled,
+)
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
+from jointbench.analysis.gap.structure_search.whole_records import (
+    JudgedFit,
+    far_beyond_limit,
+    in_whole_records,
+)
+
+
+def second_effects(
+    bench: StructureBench,
+    few: StructureBench,
+    base: Fit,
+    singles: Sequence[Fit],
+    best: JudgedFit,
+    progress: Progress,
+) -> list[JudgedFit]:
+    """Return accepted fits of two effects, or of the one to which a pair led.
+
+    Pairs that explain the longer window are fitted to whole records before a second
+    effect is sought beside a further one: with a law, that takes minutes.
+
+    Args:
+        bench: all records.
+        few: one record of each condition.
+        base: fit to all records without effects.
+        singles: fits of one effect in the longer window, best first.
+        best: the best one of them in all records.
+        progress: receives one line for each step.
+
+    Returns:
+        Best first; empty if no pair is accepted.
+    """
+    pairs: list[Fit] = []
+    firsts = one_of_each_law(singles)[: STRUCTURE_SEARCH.first_effects]
+    for k, first in enumerate(firsts):
+        pairs += _beside(few, first, progress)
+        limit = few.policy.floor_chi2
+        explained = any(chi2_per_dof(few, pair) < limit for pair in pairs)
+        if not explained and k + 1 < len(firsts):
+            continue
+        worth = that_take(pairs, singles) if far_beyond_limit(best) else pairs
+        if found := _accepted(bench, few, base, worth, progress):
+            return found
+        pairs = []
+    return []
+
+
+def _beside(few: StructureBench, first: Fit, progress: Progress) -> list[Fit]:
+    """Return fits of a second effect beside a first one in the longer window."""
+    own = few.at(first.base, first.terms, few.landing, few.floor)
+    progress(f"directed tests beside {words_of(first.candidates)}")
+    near = minimise(
+        make_problem(own, first.candidates),
+        first.x,
+        SHORT,
+        iterations=STRUCTURE_SEARCH.short_iterations,
+    )
+    return carried(own, near, tested(own, near), progress)
+
+
+def _accepted(
+    bench: StructureBench,
+    few: StructureBench,
+    base: Fit,
+    pairs: Sequence[Fit],
+    progress: Progress,
+) -> list[JudgedFit]:
+    """Return accepted fits of pairs to all records, best first; empty if none is."""
+    different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
+    worth = affordable(few, _best_first(few, list(different.values())))
+    two = in_whole_records(bench, few, base, worth, progress)
+    if two and (one := alone(bench, base, two[0])):
+        return [one]
+    if two and two[0].acceptance.passed and _both_matter(two[0]):
+        return two
+    return []
+
+
+def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None:
+    """Return the accepted fit of a single effect to which a pair led, if it did.
+
+    Where the second effect of a pair is nearly off, it was a further start for the
+    first.
+
+    Args:
+        bench: all records.
+        base: fit without effects.
+        pair: fit of two effects.
+    """
+    sizes = amplitude_sizes(with_covariance(pair.bench, pair.fit))
+    if not pair.acceptance.passed or min(sizes) >= STRUCTURE_SEARCH.plain_amplitude:
+        return None
+    kept = pair.fit.terms[int(np.argmax(sizes))]
+    start = np.concatenate([pair.fit.base, kept.coordinates])
+    own, fit = settled(bench, start, (kept.candidate,), near=True)
+    judged = JudgedFit(own, fit, accept_structure(own, fit, base))
+    return judged if judged.acceptance.passed else None
+
+
+def that_take(pairs: Sequence[Fit], singles: Sequence[Fit]) -> list[Fit]:
+    """Return pairs that take a good part of what single effects leave there.
+
+    Beside a law that leaves many times its limit, a second effect that is missing takes
+    most of it; others would be fitted to whole records for nothing.
+
+    Args:
+        pairs: fits in the longer window.
+        singles: fits there of single effects.
+    """
+    left = min(fit.cost for fit in singles)
+    return [f for f in pairs if f.cost < (1.0 - STRUCTURE_SEARCH.taken_share) * left]
+
+
+def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:
+    """Return pairs for whole records: few with a law, which is integrated there."""
+    laws = [f for f in pairs if few.nonlinear(f.candidates)]
+    left = laws[STRUCTURE_SEARCH.law_pairs :]
+    return [f for f in pairs if all(f is not one for one in left)]
+
+
+def _best_first(few: StructureBench, fits: Sequence[Fit]) -> list[Fit]:
+    return sorted(fits, key=lambda f: score(few, f))
+
+
+def _both_matter(judged: JudgedFit) -> bool:
+    """Return whether each effect of a pair is clearly on."""
+    amplitude = weakest_amplitude(with_covariance(judged.bench, judged.fit))
+    return amplitude >= judged.bench.policy.amplitude_limit
