@@ -49,7 +49,7 @@ def second_effects(
 ) -> list[JudgedFit]:
     """Return accepted fits of two effects, or of the one to which a pair led.
 
-    Pairs that explain the longer window are fitted to whole records before a second
+    Pairs that come near the longer window are fitted to whole records before a second
     effect is sought beside a further one: with a law, that takes minutes.
 
     Args:
@@ -67,9 +67,9 @@ def second_effects(
     firsts = one_of_each_law(singles)[: STRUCTURE_SEARCH.first_effects]
     for k, first in enumerate(firsts):
         pairs += _beside(few, first, progress)
-        limit = few.policy.floor_chi2
-        explained = any(chi2_per_dof(few, pair) < limit for pair in pairs)
-        if not explained and k + 1 < len(firsts):
+        limit = STRUCTURE_SEARCH.explaining_chi2
+        near = any(chi2_per_dof(few, pair) < limit for pair in pairs)
+        if not near and k + 1 < len(firsts):
             continue
         worth = that_take(pairs, singles) if far_beyond_limit(best) else pairs
         if found := _accepted(bench, few, base, worth, progress):
