@@ -271,22 +271,6 @@ def _needed(one: JudgedFit, base: Fit) -> bool:
     return one.acceptance.passed and takes(one.bench, one.fit, base)
 
 
-def _needed_by_few(best: JudgedFit, start: FloatArray) -> bool:
-    """Return whether a third of the records shows that the base needs an effect.
-
-    There the base would have to come as near as in all records.
-
-    Args:
-        best: fit with effects to all records, with an uncertain table.
-        start: base coordinates from which the base is fitted without them.
-    """
-    few = best.bench.chosen(torques_in_turn(best.bench.campaign.hits))
-    rival = cost_at(make_problem(few, best.fit.candidates), best.fit.x, FULL)
-    rival += STRUCTURE_SEARCH.uncertain_drop
-    _, base = settled(few, start, (), near=True, rival=rival)
-    return base.cost > rival + STRUCTURE_SEARCH.uncertain_drop
-
-
 def needless(
     best: JudgedFit,
     screening: Screening,
@@ -321,8 +305,6 @@ def needless(
     rival = None
     if uncertain and not within_tolerance(best.bench, best.fit):
         rival = best.fit.cost + STRUCTURE_SEARCH.uncertain_drop
-        if _needed_by_few(best, start):
-            return None
     bench, base = settled(best.bench, start, (), near=True, rival=rival)
     if bench.uncertain and takes(bench, best.fit, base):
         return None
