@@ -49,8 +49,8 @@ def second_effects(
 ) -> list[JudgedFit]:
     """Return accepted fits of two effects, or of the one to which a pair led.
 
-    Pairs that come near the longer window are fitted to whole records before a second
-    effect is sought beside a further one: with a law, that takes minutes.
+    Beside a law it takes minutes: one is sought there unless a pair with a law, found
+    beside a linear effect, is accepted.
 
     Args:
         bench: all records.
@@ -63,19 +63,23 @@ def second_effects(
     Returns:
         Best first; empty if no pair is accepted.
     """
-    pairs: list[Fit] = []
     firsts = one_of_each_law(singles)[: STRUCTURE_SEARCH.first_effects]
-    for k, first in enumerate(firsts):
-        pairs += _beside(few, first, progress)
-        limit = STRUCTURE_SEARCH.explaining_chi2
-        near = any(chi2_per_dof(few, pair) < limit for pair in pairs)
-        if not near and k + 1 < len(firsts):
-            continue
-        worth = that_take(pairs, singles) if far_beyond_limit(best) else pairs
-        if found := _accepted(bench, few, base, worth, progress):
+    laws = [first for first in firsts if few.nonlinear(first.candidates)]
+    linear = [first for first in firsts if not few.nonlinear(first.candidates)]
+    pairs = [pair for first in linear for pair in _beside(few, first, progress)]
+    if laws and any(_near_with_law(few, pair) for pair in pairs):
+        found = _accepted(bench, few, base, pairs, progress)
+        if found and few.nonlinear(found[0].fit.candidates):
             return found
-        pairs = []
-    return []
+    pairs += [pair for first in laws for pair in _beside(few, first, progress)]
+    worth = that_take(pairs, singles) if far_beyond_limit(best) else pairs
+    return _accepted(bench, few, base, worth, progress)
+
+
+def _near_with_law(few: StructureBench, pair: Fit) -> bool:
+    """Return whether a pair with a law comes near the hits in the longer window."""
+    limit = STRUCTURE_SEARCH.explaining_chi2
+    return few.nonlinear(pair.candidates) and chi2_per_dof(few, pair) < limit
 
 
 def _beside(few: StructureBench, first: Fit, progress: Progress) -> list[Fit]:

@@ -7,29 +7,69 @@ import numpy as np
 import pytest
 
 from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
+from jointbench.analysis.gap.structure_search.second_effects import second_effects
+from jointbench.analysis.gap.structure_search.short_windows import LONGER
+from jointbench.analysis.gap.structure_search.structure_acceptance import (
+    accept_structure,
+)
+from jointbench.analysis.gap.structure_search.structure_fits import settled
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import search_structure
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 
 
-def test_an_accepted_pair_ends_the_search(found: StructureOutcome) -> None:
-    """A stiff spring at a point and a gain of 20 %, found beside the first of both."""
+def struck(
+    found: StructureOutcome, hidden: dict[str, list[float]]
+) -> tuple[StructureBench, list[Term]]:
+    """Return the bench where effects are hidden, and these."""
     bench = found.base_bench
-    labels = "added_stiffness@point:P1 normal", "gain_error@channel:A1"
-    spring, gain = (
-        next(c for c in bench.candidates if c.label == label) for label in labels
-    )
-    hidden = (Term(spring, np.array([3.0])), Term(gain, np.array([0.2])))
+    known = {c.label: c for c in bench.candidates}
+    terms = [Term(known[label], np.array(x)) for label, x in hidden.items()]
     base = np.zeros(bench.base_sd.size)
-    hits = replace(bench.campaign.hits, response=bench.response(base, hidden, None))
+    hits = replace(bench.campaign.hits, response=bench.response(base, terms, None))
+    return make_structure_bench(replace(bench.campaign, hits=hits)), terms
+
+
+def test_a_second_effect_is_sought_beside_the_two_best(
+    found: StructureOutcome,
+) -> None:
+    """A stiff spring at a point and a gain of 20 %: rivals of a pair count as well."""
+    hidden = {"added_stiffness@point:P1 normal": [3.0], "gain_error@channel:A1": [0.2]}
     lines: list[str] = []
-    made = make_structure_bench(replace(bench.campaign, hits=hits))
-    outcome = search_structure(made, lines.append).outcome
-    assert {c.label for c in outcome.best.candidates} == set(labels)
+    outcome = search_structure(struck(found, hidden)[0], lines.append).outcome
     assert outcome.acceptance.passed
-    sizes = {t.candidate.label: float(t.coordinates[0]) for t in outcome.best.terms}
-    assert sizes[labels[0]] == pytest.approx(3.0, rel=0.02)
-    assert sizes[labels[1]] == pytest.approx(0.2, rel=0.02)
-    assert sum("directed tests beside" in line for line in lines) == 1
+    sizes = {t.candidate.label: t.coordinates.tolist() for t in outcome.best.terms}
+    assert sizes.keys() == hidden.keys()
+    for label, size in hidden.items():
+        assert sizes[label] == pytest.approx(size, rel=0.02)
+    assert sum("directed tests beside" in line for line in lines) == 2
+
+
+def test_an_accepted_pair_with_a_law_ends_the_search(found: StructureOutcome) -> None:
+    """Each test beside a law integrates it."""
+    hidden = {"gain_error@channel:A1": [1.0], "quadratic@bolt:0": [1.5]}
+    bench, terms = struck(found, hidden)
+    bench, base = settled(bench, np.zeros(bench.base_sd.size), (), near=True)
+    few = bench.chosen(one_of_each(bench.campaign.hits))
+    singles = [
+        minimise(
+            make_problem(few, (term.candidate,)),
+            np.append(np.zeros(few.base_sd.size), term.coordinates),
+            LONGER,
+            iterations=2,
+        )
+        for term in terms
+    ]
+    lines: list[str] = []
+    left = JudgedFit(bench, base, accept_structure(bench, base, base))
+    best, *_ = second_effects(bench, few, base, singles, left, lines.append)
+    assert {c.label for c in best.fit.candidates} == set(hidden)
+    beside = [line for line in lines if "directed tests beside" in line]
+    assert beside == ["directed tests beside gain_error@channel:A1"]
