@@ -67,13 +67,20 @@ def second_effects(
     laws = [first for first in firsts if few.nonlinear(first.candidates)]
     linear = [first for first in firsts if not few.nonlinear(first.candidates)]
     pairs = [pair for first in linear for pair in _beside(few, first, progress)]
-    if laws and any(_near_with_law(few, pair) for pair in pairs):
-        found = _accepted(bench, few, base, pairs, progress)
+    worth = _worth_it(pairs, singles, best)
+    if laws and any(_near_with_law(few, pair) for pair in worth):
+        found = _accepted(bench, few, base, worth, progress)
         if found and few.nonlinear(found[0].fit.candidates):
             return found
     pairs += [pair for first in laws for pair in _beside(few, first, progress)]
-    worth = that_take(pairs, singles) if far_beyond_limit(best) else pairs
-    return _accepted(bench, few, base, worth, progress)
+    return _accepted(bench, few, base, _worth_it(pairs, singles, best), progress)
+
+
+def _worth_it(
+    pairs: Sequence[Fit], singles: Sequence[Fit], best: JudgedFit
+) -> Sequence[Fit]:
+    """Return the pairs that are worth fits to whole records."""
+    return that_take(pairs, singles) if far_beyond_limit(best) else pairs
 
 
 def _near_with_law(few: StructureBench, pair: Fit) -> bool:
