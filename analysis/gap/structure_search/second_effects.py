@@ -142,7 +142,7 @@ def alone(bench: StructureBench, base: Fit, pair: JudgedFit) -> JudgedFit | None
 
 
 def that_take(pairs: Sequence[Fit], singles: Sequence[Fit]) -> list[Fit]:
-    """Return pairs that take a good part of what single effects leave there.
+    """Return pairs that take most of what single effects leave there.
 
     Beside a law that leaves many times its limit, a second effect that is missing takes
     most of it; others would be fitted to whole records for nothing.
@@ -152,7 +152,7 @@ def that_take(pairs: Sequence[Fit], singles: Sequence[Fit]) -> list[Fit]:
         singles: fits there of single effects.
     """
     left = min(fit.cost for fit in singles)
-    return [f for f in pairs if f.cost < (1.0 - STRUCTURE_SEARCH.taken_share) * left]
+    return [f for f in pairs if f.cost < (1.0 - STRUCTURE_SEARCH.pair_share) * left]
 
 
 def affordable(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:

@@ -164,6 +164,14 @@ class StructureSearchSettings:
         "explains the hits",
         "a pair of effects of one size leads by one of them",
     )
+    pair_share: float = numerical(
+        0.5,
+        "of chi2",
+        "share of what single effects leave in the longer window that a pair must take "
+        "beside a law far beyond its limit",
+        "a gain beside Bouc-Wen friction took more than a fifth, since a descent "
+        "continues the law as well (781071)",
+    )
     law_pairs: int = numerical(
         1,
         "pairs",
