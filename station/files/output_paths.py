@@ -90,7 +90,8 @@ def check_folder(folder: Path, own: Sequence[str]) -> None:
     foreign = sorted(names - set(own))
     if foreign:
         raise UsageError(
-            f"'{folder}' holds {foreign[0]!r}, which no demo made; name another folder"
+            f"'{folder}' holds {foreign[0]!r}, which this demo does not make; name "
+            "another folder with --out"
         )
 
 
