@@ -253,6 +253,7 @@ def _examine_sessions(
 ) -> Examined:
     """Examine the hits of sessions, on meshed bodies or on a lumped bench."""
     if wanted.model is not None and describes_structure(wanted.model):
+        refuse_on_bodies(wanted)
         from jointbench.station.gap.meshed_inputs import examine_meshed_sessions
 
         return examine_meshed_sessions(paths, wanted.model, wanted, progress)

@@ -13,12 +13,7 @@ from jointbench.station.bolted.bolted_campaign import (
 )
 from jointbench.station.bolted.free_bodies import gap_table
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.gap.gap_request import (
-    Examined,
-    GapRequest,
-    Progress,
-    refuse_on_bodies,
-)
+from jointbench.station.gap.gap_request import Examined, GapRequest, Progress
 from jointbench.station.gap.meshed_plan import plan_of
 from jointbench.station.gap.session_hits import hits_of_sessions
 from jointbench.station.gap.structure_files import remarks_on
@@ -50,11 +45,10 @@ def examine_meshed_sessions(
         progress: receives one line for each step.
 
     Raises:
-        UsageError: the model lacks a table, or an option does not apply.
+        UsageError: the model lacks a table.
         BadData: model or hits cannot be used as they are.
     """
     hits = hits_of_sessions(paths, wanted.preload)
-    refuse_on_bodies(wanted)
     progress("reducing the bodies")
     ready = bolted_campaign(hits.title, hits.recordings, model)
     return _diagnosed(hits.title, ready, wanted, progress, hits.remarks, hits.simulated)

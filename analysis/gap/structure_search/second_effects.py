@@ -67,13 +67,16 @@ def second_effects(
     laws = [first for first in firsts if few.nonlinear(first.candidates)]
     linear = [first for first in firsts if not few.nonlinear(first.candidates)]
     pairs = [pair for first in linear for pair in _beside(few, first, progress)]
-    worth = _worth_it(pairs, singles, best)
+    worth, two = _worth_it(pairs, singles, best), list[JudgedFit]()
     if laws and any(_near_with_law(few, pair) for pair in worth):
-        found = _accepted(bench, few, base, worth, progress)
+        two = in_whole_records(bench, few, base, _best_pairs(few, worth), progress)
+        found = _accepted(bench, base, two)
         if found and few.nonlinear(found[0].fit.candidates):
             return found
     pairs += [pair for first in laws for pair in _beside(few, first, progress)]
-    return _accepted(bench, few, base, _worth_it(pairs, singles, best), progress)
+    worth = _best_pairs(few, _worth_it(pairs, singles, best))
+    two = in_whole_records(bench, few, base, worth, progress, two)
+    return _accepted(bench, base, two)
 
 
 def _worth_it(
@@ -102,17 +105,22 @@ def _beside(few: StructureBench, first: Fit, progress: Progress) -> list[Fit]:
     return carried(own, near, tested(own, near), progress)
 
 
-def _accepted(
-    bench: StructureBench,
-    few: StructureBench,
-    base: Fit,
-    pairs: Sequence[Fit],
-    progress: Progress,
-) -> list[JudgedFit]:
-    """Return accepted fits of pairs to all records, best first; empty if none is."""
+def _best_pairs(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:
+    """Return the best fit of each pair that is fitted to whole records, best first."""
     different = {labels_of(f.candidates): f for f in reversed(_best_first(few, pairs))}
-    worth = affordable(few, _best_first(few, list(different.values())))
-    two = in_whole_records(bench, few, base, worth, progress)
+    return affordable(few, _best_first(few, list(different.values())))
+
+
+def _accepted(
+    bench: StructureBench, base: Fit, two: list[JudgedFit]
+) -> list[JudgedFit]:
+    """Return accepted fits of pairs, best first; empty if the best one is not.
+
+    Args:
+        bench: all records.
+        base: fit without effects.
+        two: fits of pairs to all records, best first.
+    """
     if two and (one := alone(bench, base, two[0])):
         return [one]
     if two and two[0].acceptance.passed and _both_matter(two[0]):

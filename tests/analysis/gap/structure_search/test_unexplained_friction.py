@@ -40,7 +40,7 @@ def test_a_second_effect_is_sought_beside_one_shape_of_a_law(
     found: StructureOutcome,
 ) -> None:
     """Micro-slip and macro-slip of the same bolts are one law with two shapes."""
-    macro, micro, single, mass = (
+    macro, micro, single, bolt = (
         fit_of(found, 1.0, at_site(found, name, site))
         for name, site in (
             ("macroslip", "bolts:all"),
@@ -49,8 +49,8 @@ def test_a_second_effect_is_sought_beside_one_shape_of_a_law(
             ("loose_bolt", "bolt:1"),
         )
     )
-    kept = one_of_each_law([macro, micro, single, mass])
-    assert [f.candidates for f in kept] == [f.candidates for f in (macro, single, mass)]
+    kept = one_of_each_law([macro, micro, single, bolt])
+    assert [f.candidates for f in kept] == [f.candidates for f in (macro, single, bolt)]
 
 
 def test_a_law_is_far_beyond_its_limit_by_what_it_leaves(
@@ -82,7 +82,7 @@ def test_such_a_law_is_judged_where_it_is(found: StructureOutcome) -> None:
 
 
 def test_a_pair_that_takes_nothing_is_not_carried_on(found: StructureOutcome) -> None:
-    """A mass of nothing beside friction leaves what the friction left."""
+    """A bolt as tight as the others leaves what the friction left."""
     law = at_site(found, "macroslip", "bolts:all")
     bolt = at_site(found, "loose_bolt", "bolt:1")
     single = fit_of(found, 100.0, law)
