@@ -28,16 +28,20 @@ def _slide(
     stretch: tuple[FloatArray, FloatArray],
     d: FloatArray,
 ) -> None:
-    """Write the forces of sharp sliders, and their stretch.
+    """Write the forces of sliders, and their stretch.
 
-    They hold up to their limit, then slip.
+    A sharp slider holds up to its limit, then slips. A gradual one follows u' = r' /
+    phi (1 - |u| (|u| + u sgn r') / 2): elastic while it is unloaded, and along tanh
+    (r / phi) while it is loaded, by the addition formula of tanh; the tangent of a
+    step is its Pade approximant, exact to 1e-4 up to a half of phi.
 
     Args:
-        laws: of the ports.
+        laws: of the ports; each has its sharp sliders first.
         scale: of the slips, shape (n_ports, n_hits).
         motion: of the ports before and after the step, and velocity after it.
-        stretch: before the step, and after it (written) [m], shape
-            (n_ports, n_hits, n_sliders).
+        stretch: before the step, and after it (written), shape
+            (n_ports, n_hits, n_sliders); [m], of gradual sliders over their slip
+            displacement.
         d: forces beyond the linear springs (written), shape (n_ports, n_hits).
     """
     kinds, sizes, slips, weights, sharp = laws[0], laws[1], laws[3], laws[4], laws[5]
@@ -54,37 +58,8 @@ def _slide(
                 after[p, h, i] = e
                 held += weights[p, i] * e
             d[p, h] = sizes[p] * (held - new[p, h])
-
-
-@compiled(fastmath=True)
-def _slide_gradually(
-    laws: _Laws,
-    scale: FloatArray,
-    motion: tuple[FloatArray, FloatArray, FloatArray],
-    stretch: tuple[FloatArray, FloatArray],
-    d: FloatArray,
-) -> None:
-    """Add the forces of gradual sliders to those of sharp ones.
-
-    They follow u' = r' / phi (1 - |u| (|u| + u sgn r') / 2): elastic while unloaded,
-    and along tanh (r / phi) while loaded, by the addition formula of tanh; the tangent
-    of a step is its Pade approximant, exact to 1e-4 up to a half of phi.
-
-    Args:
-        laws: of the ports.
-        scale: of the slips, shape (n_ports, n_hits).
-        motion: of the ports before and after the step, and velocity after it.
-        stretch: as of sharp sliders, over the slip displacement.
-        d: forces (changed), shape (n_ports, n_hits).
-    """
-    kinds, sizes, slips, weights, sharp = laws[0], laws[1], laws[3], laws[4], laws[5]
-    old, new, _ = motion
-    before, after = stretch
-    for p in range(d.shape[0]):
-        if kinds[p] != 0:
-            continue
         for i in range(sharp[p], slips.shape[1]):
-            for h in range(d.shape[1]):
+            for h in range(d.shape[1]):  # without branches: hits side by side
                 limit = scale[p, h] * slips[p, i]
                 step, way = (new[p, h] - old[p, h]) / limit, 1.0
                 if step < 0.0:
@@ -120,7 +95,6 @@ def _port_forces(
     kinds, sizes, gaps = laws[0], laws[1], laws[2]
     r, v = motion[1], motion[2]
     _slide(laws, scale, motion, stretch, d)
-    _slide_gradually(laws, scale, motion, stretch, d)
     for p in range(d.shape[0]):
         size, gap = sizes[p], gaps[p]
         if kinds[p] == 1:
