@@ -8,8 +8,16 @@ import pytest
 
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.structure_bench.make_structure_bench import (
+    make_structure_bench,
+)
+from jointbench.analysis.gap.structure_search import whole_records
 from jointbench.analysis.gap.structure_search.continued_laws import one_of_each_law
+from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
 from jointbench.analysis.gap.structure_search.second_effects import that_take
+from jointbench.analysis.gap.structure_search.short_windows import LONGER
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
     allowed_chi2,
@@ -19,6 +27,7 @@ from jointbench.analysis.gap.structure_search.structure_outcome import Structure
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     far_beyond_limit,
+    in_whole_records,
 )
 
 
@@ -88,3 +97,29 @@ def test_a_pair_that_takes_nothing_is_not_carried_on(found: StructureOutcome) ->
     single = fit_of(found, 100.0, law)
     idle, helpful = (fit_of(found, cost, law, bolt) for cost in (70.0, 20.0))
     assert that_take([helpful, idle], [single]) == [helpful]
+
+
+def test_a_law_far_beyond_its_limit_is_not_fitted_to_all_records(
+    found: StructureOutcome, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Micro-slip does not explain a channel that reads twice as much."""
+    hits = found.base_bench.campaign.hits
+    response = hits.response.copy()
+    response[:, 1] *= 2.0
+    bench = make_structure_bench(
+        replace(found.base_bench.campaign, hits=replace(hits, response=response))
+    )
+    bench, base = settled(bench, np.zeros(bench.base_sd.size), (), near=True)
+    few = bench.chosen(one_of_each(bench.campaign.hits))
+    law = at_site(found, "microslip", "bolts:all")
+    start = np.append(base.x, [0.1, 0.0, -1.0, 0.5, -0.1])
+    fit = minimise(make_problem(few, (law,)), start, LONGER, iterations=1)
+
+    def unwanted(*arguments: object, **options: object) -> None:
+        pytest.fail("the law was fitted to all records")
+
+    monkeypatch.setattr(whole_records, "settled", unwanted)
+    (only,) = in_whole_records(bench, few, base, [fit], lambda line: None)
+    assert only.fit.candidates == (law,)
+    assert not only.acceptance.passed
+    assert len(only.bench.landing) == len(hits.names)
