@@ -2,7 +2,7 @@
 """Minimise the cost by the Levenberg-Marquardt method, coarse to fine."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -151,31 +151,36 @@ def descend(
     if age > 0 and how.exact_slopes:
         j, age = _NO_SLOPES, 0
         j = how.slopes(problem, x, r)
-    return Fit(
-        x,
-        problem.n_base,
-        problem.candidates,
-        r,
-        j,
-        cost,
-        problem.prior,
-        problem.centre,
-        late=age > 0,
-    )
+    return replace(_fit(problem, x, r, j, cost), late=age > 0)
+
+
+def fit_at(problem: FitProblem, start: FloatArray, resolution: Resolution) -> Fit:
+    """Return the fit at a start, without a step and without slopes.
+
+    Args:
+        problem: least-squares problem.
+        start: coordinates, shape (n,).
+        resolution: window and step of the residual.
+    """
+    x = np.clip(start, problem.lower, problem.upper)
+    r, cost = _looked_at(problem, x, resolution)
+    if not np.isfinite(cost):
+        return _pruned(problem, x, r)
+    return _fit(problem, x, r, np.zeros((0, x.size)), cost)
 
 
 def _pruned(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
     """Return the fit of a start at which the model diverges."""
-    return Fit(
-        x,
-        problem.n_base,
-        problem.candidates,
-        np.full_like(r, np.inf),
-        np.zeros((r.size, x.size)),
-        np.inf,
-        problem.prior,
-        problem.centre,
-    )
+    slopes = np.zeros((r.size, x.size))
+    return _fit(problem, x, np.full_like(r, np.inf), slopes, np.inf)
+
+
+def _fit(
+    problem: FitProblem, x: FloatArray, r: FloatArray, j: SlopeArray, cost: float
+) -> Fit:
+    """Return the fit of a problem at x, with residual, slopes and cost there."""
+    n, candidates = problem.n_base, problem.candidates
+    return Fit(x, n, candidates, r, j, cost, problem.prior, problem.centre)
 
 
 def _excess(problem: FitProblem, cost: float, dof: float | None) -> float:

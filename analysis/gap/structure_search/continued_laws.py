@@ -20,7 +20,12 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 
 
 def with_continued(
-    few: StructureBench, fits: Sequence[Fit], window: Resolution, steps: int
+    few: StructureBench,
+    fits: Sequence[Fit],
+    window: Resolution,
+    steps: int,
+    *,
+    rival: float | None = None,
 ) -> list[Fit]:
     """Return fits, laws that ended at a common bound replaced by those beyond it.
 
@@ -32,6 +37,7 @@ def with_continued(
         fits: in a window.
         window: in which they were fitted.
         steps: most steps of a fit.
+        rival: cost that a fit should reach, if any.
     """
     found = list(fits)
     for fit in fits:
@@ -41,7 +47,9 @@ def with_continued(
         candidates, x = start
         own = few.at(fit.base, fit.terms, few.landing, few.floor)
         problem = make_problem(own, candidates)
-        beyond = minimise(problem, x, window, iterations=steps, exact_slopes=False)
+        beyond = minimise(
+            problem, x, window, iterations=steps, rival=rival, exact_slopes=False
+        )
         alike = [f for f in found if f.candidates == candidates]
         best = min([*alike, beyond], key=lambda f: f.cost)
         found = [f for f in found if all(f is not one for one in alike)]

@@ -17,7 +17,9 @@ from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.continued_laws import one_of_each_law
 from jointbench.analysis.gap.structure_search.short_windows import (
+    LONGER,
     SHORT,
+    CostsToReach,
     carried,
     tested,
 )
@@ -67,23 +69,20 @@ def second_effects(
     laws = [first for first in firsts if few.nonlinear(first.candidates)]
     linear = [first for first in firsts if not few.nonlinear(first.candidates)]
     pairs = [pair for first in linear for pair in _beside(few, first, progress)]
-    worth, two = _worth_it(pairs, singles, best), list[JudgedFit]()
+    far, two = far_beyond_limit(best), list[JudgedFit]()
+    worth = that_take(pairs, singles) if far else pairs
     if laws and any(_near_with_law(few, pair) for pair in worth):
         two = in_whole_records(bench, few, base, _best_pairs(few, worth), progress)
         found = _accepted(bench, base, two)
         if found and few.nonlinear(found[0].fit.candidates):
             return found
-    pairs += [pair for first in laws for pair in _beside(few, first, progress)]
-    worth = _best_pairs(few, _worth_it(pairs, singles, best))
-    two = in_whole_records(bench, few, base, worth, progress, two)
+    if far:
+        worth = _that_take_beside(few, laws, pairs, singles, progress)
+    else:
+        pairs += [pair for first in laws for pair in _beside(few, first, progress)]
+        worth = pairs
+    two = in_whole_records(bench, few, base, _best_pairs(few, worth), progress, two)
     return _accepted(bench, base, two)
-
-
-def _worth_it(
-    pairs: Sequence[Fit], singles: Sequence[Fit], best: JudgedFit
-) -> Sequence[Fit]:
-    """Return the pairs that are worth fits to whole records."""
-    return that_take(pairs, singles) if far_beyond_limit(best) else pairs
 
 
 def _near_with_law(few: StructureBench, pair: Fit) -> bool:
@@ -94,6 +93,46 @@ def _near_with_law(few: StructureBench, pair: Fit) -> bool:
 
 def _beside(few: StructureBench, first: Fit, progress: Progress) -> list[Fit]:
     """Return fits of a second effect beside a first one in the longer window."""
+    own, near = _in_short_window(few, first, progress)
+    return carried(own, near, tested(own, near), progress)
+
+
+def _that_take_beside(
+    few: StructureBench,
+    laws: Sequence[Fit],
+    pairs: Sequence[Fit],
+    singles: Sequence[Fit],
+    progress: Progress,
+) -> list[Fit]:
+    """Return pairs that take most of what is left, where laws are far beyond a limit.
+
+    A law is fitted in the longer window from where a second effect is sought beside it,
+    so that a pair takes nothing that the law takes there alone; a descent ends where it
+    would hardly take enough.
+
+    Args:
+        few: one record of each condition.
+        laws: fits of laws in the longer window.
+        pairs: fits of pairs beside linear effects.
+        singles: fits of single effects.
+        progress: receives one line for each step.
+    """
+    found, alone = list(pairs), list(singles)
+    steps, left = STRUCTURE_SEARCH.longer_iterations, 1.0 - STRUCTURE_SEARCH.pair_share
+    for first in laws:
+        own, near = _in_short_window(few, first, progress)
+        problem = make_problem(own, first.candidates)
+        law = minimise(problem, near.x, LONGER, iterations=steps, exact_slopes=False)
+        costs = CostsToReach(left * near.cost, left * law.cost)
+        found += carried(own, near, tested(own, near), progress, costs)
+        alone.append(law)
+    return that_take(found, alone)
+
+
+def _in_short_window(
+    few: StructureBench, first: Fit, progress: Progress
+) -> tuple[StructureBench, Fit]:
+    """Return the bench about a first effect, and its fit in the short window."""
     own = few.at(first.base, first.terms, few.landing, few.floor)
     progress(f"directed tests beside {words_of(first.candidates)}")
     near = minimise(
@@ -102,7 +141,7 @@ def _beside(few: StructureBench, first: Fit, progress: Progress) -> list[Fit]:
         SHORT,
         iterations=STRUCTURE_SEARCH.short_iterations,
     )
-    return carried(own, near, tested(own, near), progress)
+    return own, near
 
 
 def _best_pairs(few: StructureBench, pairs: Sequence[Fit]) -> list[Fit]:

@@ -37,8 +37,29 @@ def tested(few: StructureBench, near: Fit) -> Screening:
     return screen(few.for_tests(near, SHORT), near, others, resolution=SHORT)
 
 
+@dataclass(frozen=True, slots=True)
+class CostsToReach:
+    """Costs that a fit should reach; one that would hardly do so ends early.
+
+    Attributes:
+        short: in the short window; None for any.
+        longer: in the longer one; None for any.
+    """
+
+    short: float | None = None
+    longer: float | None = None
+
+
+ANY_COST = CostsToReach()
+"""Of fits that are compared with each other alone."""
+
+
 def carried(
-    few: StructureBench, near: Fit, screening: Screening, progress: Progress
+    few: StructureBench,
+    near: Fit,
+    screening: Screening,
+    progress: Progress,
+    costs: CostsToReach = ANY_COST,
 ) -> list[Fit]:
     """Fit candidates in short windows, then the best of them in longer ones.
 
@@ -49,12 +70,13 @@ def carried(
         near: fit in the short window to which one effect is added.
         screening: directed tests of that fit.
         progress: receives one line for each fit.
+        costs: that fits should reach.
 
     Returns:
         Fits in the longer window, best first.
     """
     fits: list[Fit] = []
-    rival: float | None = None
+    rival = costs.short
     bases = _bases(few, near)
     for candidate in _chosen(few, near, screening, bases):
         progress(f"{words_of((*near.candidates, candidate))} in a short window")
@@ -71,12 +93,10 @@ def carried(
             for s in starts[: STRUCTURE_SEARCH.starts_kept]
         ]
         fits += sorted(found, key=lambda f: f.cost)[:1]
-        rival = min((f.cost for f in fits), default=None)
-    fits = with_continued(few, fits, SHORT, STRUCTURE_SEARCH.short_iterations)
-    fits.sort(key=lambda f: score(few, f))
+        rival = _lowest(costs.short, fits)
     longer: list[Fit] = []
-    rival = None
-    for fit in fits[: STRUCTURE_SEARCH.longer_fits]:
+    rival = costs.longer
+    for fit in _best_with_continued(few, fits, costs.short):
         progress(f"{words_of(fit.candidates)} in a longer window")
         own = few.at(fit.base, fit.terms, few.landing, few.floor)
         longer.append(
@@ -89,9 +109,35 @@ def carried(
                 exact_slopes=False,
             )
         )
-        rival = min(f.cost for f in longer)
-    longer = with_continued(few, longer, LONGER, STRUCTURE_SEARCH.longer_iterations)
+        rival = _lowest(costs.longer, longer)
+    steps = STRUCTURE_SEARCH.longer_iterations
+    longer = with_continued(few, longer, LONGER, steps, rival=costs.longer)
     return sorted(longer, key=lambda f: score(few, f))
+
+
+def _lowest(cost: float | None, fits: Sequence[Fit]) -> float | None:
+    """Return the lowest of a cost and those of fits, None if there is none."""
+    known = [] if cost is None else [cost]
+    return min([*known, *(f.cost for f in fits)], default=None)
+
+
+def _best_with_continued(
+    few: StructureBench, fits: Sequence[Fit], rival: float | None
+) -> list[Fit]:
+    """Return the best fits in the short window, laws continued beyond a common bound.
+
+    Beside a law that ended there, every second effect has a fit that ends there, and
+    the law beyond is fitted only beside those that are among the best.
+
+    Args:
+        few: one record of each condition.
+        fits: in the short window.
+        rival: cost that they should reach there, if any.
+    """
+    count, steps = STRUCTURE_SEARCH.longer_fits, STRUCTURE_SEARCH.short_iterations
+    best = sorted(fits, key=lambda f: score(few, f))[:count]
+    best = with_continued(few, best, SHORT, steps, rival=rival)
+    return sorted(best, key=lambda f: score(few, f))[:count]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

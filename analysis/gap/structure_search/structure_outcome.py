@@ -7,16 +7,19 @@ from dataclasses import dataclass, replace
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.naming import Acceptance
 from jointbench.analysis.gap.judgement.rivals import rival_within, rivals
-from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FINE, FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.descent import fit_at, minimise
 from jointbench.analysis.gap.search.screening import Screening
 from jointbench.analysis.gap.search.selection_round import score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.fit_summary import FitSummary
 from jointbench.analysis.gap.structure_search.sensors_from_base import of_table
-from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
+from jointbench.analysis.gap.structure_search.slopes_again import (
+    with_covariance,
+    with_slopes,
+)
 from jointbench.analysis.gap.structure_search.structure_fits import fitted_finely
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
@@ -73,10 +76,10 @@ def compared(none: SearchOutcome, done: Sequence[JudgedFit]) -> SearchOutcome:
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
     fits.sort(key=lambda f: score(best.bench, f))
-    level = [best.fit]
+    level, shown = [best.fit], with_covariance(best.bench, best.fit)
     if best.acceptance.passed:
         level = _alike_by_size(best, rivals(best.bench, fits))
-    shown = with_slopes(best.bench, best.fit)
+        shown = with_slopes(best.bench, best.fit)
     return replace(
         none,
         bench=best.bench,
@@ -100,10 +103,15 @@ def _alike_by_size(best: JudgedFit, level: Sequence[Fit]) -> list[Fit]:
 
 
 def _alike(best: JudgedFit, fit: Fit) -> Fit:
-    """Return a rival under the whitening of the best fit, with the slopes of a law."""
-    if best.bench.nonlinear(fit.candidates):
-        return fitted_finely(best.bench, fit.x, fit.candidates, 3)
+    """Return a rival under the whitening of the best fit, with the slopes of a law.
+
+    Steps of a law, which take long, are made where they decide between rivals.
+    """
     problem = make_problem(best.bench, fit.candidates)
+    if best.bench.nonlinear(fit.candidates):
+        if not best.acceptance.passed:
+            return fit_at(problem, fit.x, FINE)
+        return fitted_finely(best.bench, fit.x, fit.candidates, 3)
     # Frequencies that a table leaves open are those of the closed modes of the best.
     steps = STRUCTURE_SEARCH.whole_iterations if best.bench.uncertain else 3
     found = minimise(problem, fit.x, FULL, iterations=steps, exact_slopes=False)

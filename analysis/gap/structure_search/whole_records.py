@@ -85,7 +85,7 @@ def in_whole_records(
         progress(f"{words_of(fit.candidates)} in whole records")
         own, start = retuned(own, fit.x, fit.candidates)
         own, found = in_full(own, start, fit.candidates)
-        near.append((own.at_rest(), without_slopes(found)))
+        near.append((own.at_rest(), with_covariance_alone(found)))
     near.sort(key=lambda one: one[1].cost)
     near = _from_other_frequencies(near, progress)
     done: list[JudgedFit] = []
@@ -108,7 +108,8 @@ def _in_all_records(
     """Fit all records from a fit to one of each condition, and judge the fit.
 
     A law that is far beyond its limit there explains all records no better. Each hit is
-    met where it landed, but no step is made: a step of a law takes seconds.
+    met where it landed, but no step is made and no slopes are computed, which take
+    seconds: its covariance stays that of one record of each condition.
 
     Args:
         bench: all records.
@@ -119,6 +120,7 @@ def _in_all_records(
     whole = replace(bench, layout=few.layout)
     if _law_far_beyond(few, near, allowed_chi2(bench, base)):
         whole, fit = met_at(whole, near.x, near.candidates)
+        fit = replace(fit, kept=near.kept)
     else:
         near_it = near_records(few, near)
         whole, fit = settled(whole, near.x, near.candidates, near=near_it)
