@@ -43,6 +43,10 @@ class Descent:
             samples, which are more where their errors are coherent.
         sparing: try no step that is hardly shorter than one that failed, and correct
             none further whose correction raised the cost.
+        followed: whether a fit with slopes of its own follows, so that no others are
+            computed where those updated by the secant promise nothing more.
+        promises: drops that the linear model predicts for a full step within which the
+            rival must be, or the descent ends; None for any number.
     """
 
     resolution: Resolution = FULL
@@ -53,6 +57,8 @@ class Descent:
     least_drop: float = 0.0
     dof: float | None = None
     sparing: bool = False
+    followed: bool = False
+    promises: float | None = None
 
     def slopes(self, problem: FitProblem, x: FloatArray, r: FloatArray) -> SlopeArray:
         """Return the Jacobian at x, where the residual is r, shape (n_rows, n)."""
@@ -119,9 +125,12 @@ def descend(
             + SEARCH.absolute_tolerance,
         )
         near = _Neighbourhood(problem, x, r, j, cost, SEARCH.promised_share * ended)
+        if how.rival is not None and how.promises is not None:
+            if cost - how.rival > how.promises * near.promise():
+                break
         moved, damping = _step(near, damping, how)
         if moved is None:
-            if age == 0:
+            if age == 0 or how.followed:
                 break
             near.j = j = _NO_SLOPES
             j, age, damping = how.slopes(problem, x, r), 0, 1e-3
@@ -223,6 +232,13 @@ class _Neighbourhood:
         """Return the drop of the cost predicted by the linear model."""
         step = moved - self.x
         return -float(step @ (2.0 * self.gradient + self.hessian @ step))
+
+    def promise(self) -> float:
+        """Return the drop of the cost that the linear model predicts for a full step.
+
+        Bounds are left out.
+        """
+        return self.predicted_drop(self.x - _solve(self.hessian, self.gradient))
 
 
 def _secant(j: SlopeArray, change: FloatArray, difference: FloatArray) -> SlopeArray:

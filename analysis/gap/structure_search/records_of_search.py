@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import IntArray
+from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_campaign import HitRecords
 
 
@@ -32,6 +33,19 @@ def torques_in_turn(hits: HitRecords) -> IntArray:
         own = late, int(k)
         best[point, level] = min(best.get((point, level), own), own)
     return np.array(sorted(k for _, k in best.values()), dtype=np.int64)
+
+
+def records_of_base(bench: StructureBench) -> IntArray:
+    """Return the records with which a base approaches all of them.
+
+    Each hit of a point has the same error of an uncertain modal table, so torques take
+    turns; beside an exact one, the base is judged by what every condition shows.
+
+    Args:
+        bench: all records.
+    """
+    hits = bench.campaign.hits
+    return torques_in_turn(hits) if bench.uncertain else one_of_each(hits)
 
 
 def hardest(hits: HitRecords, count: int) -> IntArray:

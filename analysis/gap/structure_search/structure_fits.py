@@ -125,6 +125,7 @@ def _settled_in(
             least_drop=_least_drop(few, candidates, window),
             dof=_dof(few, window),
             sparing=few.uncertain,
+            followed=few.uncertain and k == 0,
         )
         fit = _stated(few, descend(problem, x, how, given))
         x = fit.x
@@ -202,7 +203,7 @@ def settled(
             is left where it is, and its slopes are those of the step before.
     """
     bench = _landed(bench, start, candidates, near=near)
-    fit = _whole(bench, start, candidates, rival=rival)
+    fit = _whole(bench, start, candidates, rival=rival, followed=bench.uncertain)
     for _ in range(STRUCTURE_SEARCH.settling_rounds):
         landing, before = bench.landing, fit.cost
         fit, given = _left_to_next(bench, fit)
@@ -294,8 +295,10 @@ def _whole(
     known: SlopesOnHand | None = None,
     *,
     rival: float | None = None,
+    followed: bool = False,
 ) -> Fit:
     """Fit whole records, hits as expanded."""
+    law = bench.nonlinear(candidates)
     how = Descent(
         FULL,
         iterations=STRUCTURE_SEARCH.whole_iterations,
@@ -304,6 +307,8 @@ def _whole(
         least_drop=_least_drop(bench, candidates, FULL),
         dof=_dof(bench, FULL),
         sparing=bench.uncertain,
+        followed=followed,
+        promises=None if law else STRUCTURE_SEARCH.promises,
     )
     problem = _weighed(bench, candidates, FULL)
     return _stated(bench, descend(problem, start, how, known))

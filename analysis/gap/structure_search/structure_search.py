@@ -43,7 +43,7 @@ from jointbench.analysis.gap.structure_search.differences_from_base import (
 from jointbench.analysis.gap.structure_search.fit_summary import fit_summary
 from jointbench.analysis.gap.structure_search.found_base import FoundBase, judged_base
 from jointbench.analysis.gap.structure_search.records_of_search import (
-    one_of_each,
+    records_of_base,
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
@@ -111,7 +111,7 @@ def search_structure(bench: StructureBench, progress: Progress) -> StructureOutc
 def _search(bench: StructureBench, progress: Progress) -> StructureOutcome:
     """Fit the base, and search for a missing effect; see `search_structure`."""
     progress("base in short windows")
-    few = bench.chosen(one_of_each(bench.campaign.hits))
+    few = bench.chosen(records_of_base(bench))
     few, start = retuned(few, base_in_windows(few), ())
     progress("base in whole records")
     bench = replace(bench, reach=STRUCTURE_SEARCH.final_reach, layout=few.layout)

@@ -239,6 +239,12 @@ class StructureSearchSettings:
         "a base that explained the hits began near them; at 73 times its cost one "
         "crept for more than 300 s (571002)",
     )
+    promises: float = numerical(
+        2.0,
+        "of the predicted drop",
+        "drop that a fit without laws must not need to reach its rival",
+        "a phase that is off by 1.5 rad takes 1.9 times what its slope promises",
+    )
     any_error: float = numerical(
         1e3,
         "of the sd",

@@ -17,10 +17,10 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.rivals import rivals
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.slopes import along_columns, linear_change
 from jointbench.analysis.gap.search.candidate_starts import along
-from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.descent import Descent, descend
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, score
@@ -102,7 +102,7 @@ class WeakEffects:
         problem = make_problem(own, fit.candidates)
         start = np.concatenate([self.x, fit.x[fit.n_base :]])
         steps = STRUCTURE_SEARCH.approach_iterations
-        found = completed(minimise(problem, start, WINDOW, iterations=steps))
+        found = completed(_fitted(problem, start, steps))
         return beyond_noise(own, found) < max(WEAK.left, WEAK.part * self.left)
 
 
@@ -123,7 +123,7 @@ def weak_effects(
     if own is None:
         return None
     steps = WEAK.iterations
-    near = minimise(make_problem(own, ()), start, WINDOW, iterations=steps)
+    near = _fitted(make_problem(own, ()), start, steps)
     weak = [c for c in own.addable(()) if _may_be_weak(own, c)]
     tests = screen(own.for_tests(near, WINDOW), near, weak, resolution=WINDOW)
     ended = completed(near)
@@ -236,6 +236,19 @@ def completed(fit: Fit) -> Fit:
     )
 
 
+def _fitted(problem: FitProblem, start: FloatArray, steps: int) -> Fit:
+    """Return a fit in the window of the tests, without steps that creep.
+
+    Args:
+        problem: on a bench that weighs its table by errors of bodies.
+        start: coordinates, shape (n,).
+        steps: most steps.
+    """
+    least = STRUCTURE_SEARCH.table_drop
+    how = Descent(WINDOW, iterations=steps, least_drop=least, sparing=True)
+    return descend(problem, start, how)
+
+
 def _may_be_weak(bench: StructureBench, candidate: Candidate) -> bool:
     """Return whether an effect has no tests of its own beside a base.
 
@@ -270,7 +283,7 @@ def _explaining(
         starts = [along(problem, near, test, WINDOW) for test in tests]
         start = min(starts, key=lambda one: one.cost)
         steps = STRUCTURE_SEARCH.approach_iterations
-        fits.append(minimise(problem, start.x, WINDOW, iterations=steps))
+        fits.append(_fitted(problem, start.x, steps))
     fits.sort(key=lambda one: score(own, one))
     if fits and fits[0].cost < WEAK.part * near.cost:
         own, near, fits = _once_more(own, near, fits)
@@ -302,7 +315,7 @@ def _once_more(
         return own, near, list(fits)
     steps = STRUCTURE_SEARCH.approach_iterations
     again = [
-        minimise(make_problem(moved, one.candidates), one.x, WINDOW, iterations=steps)
+        _fitted(make_problem(moved, one.candidates), one.x, steps)
         for one in (near, *fits)
     ]
     return moved, again[0], again[1:]
