@@ -32,7 +32,7 @@ def base_in_windows(few: StructureBench) -> FloatArray:
     """Return the base fitted from its nominal values, coarse to fine, shape (n_base,).
 
     Args:
-        few: one record of each condition.
+        few: records of the base, see `records_of_base`.
     """
     x = np.zeros(few.base_sd.size)
     for window in STRUCTURE_SEARCH.base_windows:
@@ -48,12 +48,11 @@ def base_in_whole_records(
 ) -> tuple[StructureBench, Fit]:
     """Fit the base to whole records: to all of them, unless it is far off.
 
-    A base far off is fitted to one record of each condition, and its chi2 is that of
-    all records.
+    A base far off is fitted to some of them, and its chi2 is that of all records.
 
     Args:
         bench: all records.
-        few: one record of each condition.
+        few: records of the base, see `records_of_base`.
         start: base coordinates as fitted in short windows, shape (n_base,).
     """
     few = replace(few, reach=bench.reach, floor=few.table_floor)
@@ -62,7 +61,7 @@ def base_in_whole_records(
     chi2 = chi2_per_dof(few, fit)
     explains, x = chi2 < few.policy.floor_chi2, fit.x
     layout = with_errors_found(bench.layout, fit, explains=explains)
-    # What one record of each condition takes is needed for all of them.
+    # What these records take is needed for all of them.
     del few, fit
     bench = replace(bench, layout=layout)
     if chi2 < STRUCTURE_SEARCH.explaining_chi2:

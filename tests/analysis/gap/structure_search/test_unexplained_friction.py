@@ -87,6 +87,7 @@ def test_such_a_law_is_judged_where_it_is(found: StructureOutcome) -> None:
     assert np.array_equal(there.x, x)
     _, fitted = settled(bench, x, (), near=True)
     assert there.chi2 == pytest.approx(fitted.chi2, rel=0.05)
+    assert not there.jacobian.size
     assert whole.landing == pytest.approx(bench.landing, abs=1e-4)
 
 
@@ -122,4 +123,6 @@ def test_a_law_far_beyond_its_limit_is_not_fitted_to_all_records(
     (only,) = in_whole_records(bench, few, base, [fit], lambda line: None)
     assert only.fit.candidates == (law,)
     assert not only.acceptance.passed
+    assert not only.fit.jacobian.size
+    assert np.all(np.diag(only.fit.covariance) >= 0.0)
     assert len(only.bench.landing) == len(hits.names)
