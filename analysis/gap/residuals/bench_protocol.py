@@ -137,6 +137,26 @@ class SlopedBench(Protocol):
         ...
 
 
+@runtime_checkable
+class WhitensTogether(Protocol):
+    """A bench that whitens several residuals in less time than one after the other."""
+
+    def residuals(
+        self,
+        base: FloatArray,
+        every: Sequence[Sequence[Term]],
+        resolution: Resolution,
+    ) -> FloatArray:
+        """Return the residual with each of several sets of effects, (n_sets, n_rows).
+
+        Args:
+            base: coordinates, shape (n_base,).
+            every: sets of effects.
+            resolution: window and step.
+        """
+        ...
+
+
 class NoisyBench(Bench, Protocol):
     """A bench that states the expected noise of its residual."""
 

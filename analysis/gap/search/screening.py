@@ -19,12 +19,14 @@ from numpy.typing import NDArray
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD
-from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.bench_protocol import Bench, WhitensTogether
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.response.threads import each
 from jointbench.analysis.gap.search.search_settings import SEARCH
 
+_Start = tuple[Candidate, FloatArray]
+"""An effect with coordinates at which it is tested."""
 PROBE = SEARCH.probe_amplitude
 SCREEN = Resolution(oversampling=SEARCH.screening_steps)
 
@@ -105,23 +107,8 @@ def screen(
     if resolution.window is None:
         starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
     tangent = _tangent(fit)
-    base = bench.residual(fit.base, fit.terms, resolution)
-    left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
-    taken = np.empty((len(starts), fit.x.size))
-    norm = np.empty(len(starts))
-
-    def test(k: int) -> None:
-        candidate, u = starts[k]
-        probe, unit = _probe(candidate, u)
-        terms = (*fit.terms, Term(candidate, probe))
-        row = np.zeros(tangent.q.shape[0])
-        row[: base.size] = (bench.residual(fit.base, terms, resolution) - base) / unit
-        taken[k] = tangent.q.T @ row
-        norm[k] = row @ row
-        left[k] = row - tangent.q @ taken[k]
-
-    each(test, len(starts))
-    return _judge(bench, starts, tangent, _Tested(left, taken, norm, fixed), seed)
+    tested = _tested(bench, fit, starts, tangent, resolution, fixed)
+    return _judge(bench, starts, tangent, tested, seed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,6 +144,60 @@ class _Tested:
     fixed: int
 
 
+def _tested(
+    bench: Bench,
+    fit: Fit,
+    starts: Sequence[_Start],
+    tangent: _Tangent,
+    resolution: Resolution,
+    fixed: int,
+) -> _Tested:
+    """Return the directions of effects at their starts, several whitened together.
+
+    Args:
+        bench: measurement and model.
+        fit: that is tested.
+        starts: effects and coordinates.
+        tangent: space of the fit.
+        resolution: of the residual.
+        fixed: number of grid points among the starts.
+    """
+    base = bench.residual(fit.base, fit.terms, resolution)
+    left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
+    taken = np.empty((len(starts), fit.x.size))
+    norm = np.empty(len(starts))
+    count = SEARCH.tests_together if isinstance(bench, WhitensTogether) else 1
+
+    def test(block: int) -> None:
+        own = slice(block * count, (block + 1) * count)
+        probes = [(c, *_probe(c, u)) for c, u in starts[own]]
+        every = [(*fit.terms, Term(c, probe)) for c, probe, _ in probes]
+        units = np.array([unit for _, _, unit in probes])
+        rows = np.zeros((len(probes), tangent.q.shape[0]))
+        changed = rows[:, : base.size]
+        changed[:] = _residuals(bench, fit.base, every, resolution)
+        changed -= base
+        changed /= units[:, None]
+        taken[own] = rows @ tangent.q
+        norm[own] = np.sum(rows**2, axis=1)
+        left[own] = rows - taken[own] @ tangent.q.T
+
+    each(test, -(-len(starts) // count))
+    return _Tested(left, taken, norm, fixed)
+
+
+def _residuals(
+    bench: Bench,
+    base: FloatArray,
+    every: Sequence[Sequence[Term]],
+    resolution: Resolution,
+) -> FloatArray:
+    """Return the residual with each of several sets of effects, (n_sets, n_rows)."""
+    if isinstance(bench, WhitensTogether):
+        return bench.residuals(base, every, resolution)
+    return np.array([bench.residual(base, terms, resolution) for terms in every])
+
+
 def _tangent(fit: Fit) -> _Tangent:
     root = np.sqrt(fit.prior)
     q, r = np.linalg.qr(np.concatenate([fit.jacobian, np.diag(root)]))
@@ -185,7 +226,7 @@ def start_grid(candidate: Candidate) -> list[FloatArray]:
 
 def _judge(
     bench: Bench,
-    starts: Sequence[tuple[Candidate, FloatArray]],
+    starts: Sequence[_Start],
     tangent: _Tangent,
     tested: _Tested,
     seed: int,

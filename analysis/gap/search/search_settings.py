@@ -92,6 +92,12 @@ class SearchSettings:
         "drop below which slopes are differenced again",
         "development campaigns",
     )
+    tests_together: int = numerical(
+        16,
+        "tests",
+        "directed tests whose residuals are whitened together, where a bench can",
+        "one by one, errors of bodies took half the time of the tests beside them",
+    )
     probe_amplitude: float = numerical(
         1e-6,
         "-",

@@ -263,10 +263,29 @@ class StructureBench:
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return model minus measurement over sigma, whitened, shape (n_rows,)."""
-        fine = resolution.oversampling > FULL.oversampling
-        model = self.model(base, terms, resolution.window, fine=fine)
-        modelled = model.response()
-        return self.whitening(self.off(modelled)[:, None]).ravel()
+        return np.asarray(self.residuals(base, [terms], resolution)[0])
+
+    def residuals(
+        self,
+        base: FloatArray,
+        every: Sequence[Sequence[Term]],
+        resolution: Resolution,
+    ) -> FloatArray:
+        """Return residuals with each of several sets of effects, whitened together.
+
+        Args:
+            base: coordinates.
+            every: sets of effects.
+            resolution: of the records.
+
+        Returns:
+            Model minus measurement over sigma, shape (n_sets, n_rows).
+        """
+        fine, window = resolution.oversampling > FULL.oversampling, resolution.window
+        models = (self.model(base, terms, window, fine=fine) for terms in every)
+        off = np.stack([self.off(model.response()) for model in models], axis=1)
+        white = self.whitening(off).swapaxes(0, 1)
+        return white.reshape(len(every), -1)
 
     def slopes(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
