@@ -8,19 +8,21 @@ from scipy.special import ndtri
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
-from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import (
     approached,
     chi2_per_dof,
+    explaining_cost,
     settled,
 )
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
@@ -65,7 +67,10 @@ def base_in_whole_records(
     del few, fit
     bench = replace(bench, layout=layout)
     if chi2 < STRUCTURE_SEARCH.explaining_chi2:
-        return settled(bench, x, (), near=True)
+        limit = explaining_cost(bench)
+        rival = None if limit is None else limit * bench.blocks.dof
+        bench, fit = settled(bench, x, (), near=True, rival=rival)
+        return bench, with_slopes(bench, without_slopes(fit)) if fit.late else fit
     whole = bench.at(x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
 

@@ -50,7 +50,22 @@ def approached(
         candidates: effects.
     """
     few, fit = in_windows(few, start, candidates)
-    return in_full(few, fit.x, candidates)
+    rival = None if candidates else explaining_cost(few)
+    return in_full(few, fit.x, candidates, rival=rival)
+
+
+def explaining_cost(bench: StructureBench) -> float | None:
+    """Return the cost per row that a base should reach; None for any.
+
+    A base that lacks an effect creeps where its modal table is uncertain, far from
+    explaining the hits, and the one beside the effect takes its place.
+
+    Args:
+        bench: its records.
+    """
+    if not bench.uncertain:
+        return None
+    return bench.policy.floor_chi2 / bench.coherence
 
 
 def in_windows(
@@ -78,10 +93,21 @@ def in_windows(
 
 
 def in_full(
-    few: StructureBench, start: FloatArray, candidates: Sequence[Candidate]
+    few: StructureBench,
+    start: FloatArray,
+    candidates: Sequence[Candidate],
+    *,
+    rival: float | None = None,
 ) -> tuple[StructureBench, Fit]:
-    """Fit one record of each condition whole, from a fit in windows."""
-    return _settled_in(few, start, candidates, FULL)
+    """Fit one record of each condition whole, from a fit in windows.
+
+    Args:
+        few: one record of each condition.
+        start: base coordinates, then those of the effects.
+        candidates: effects.
+        rival: cost per row which a descent should reach.
+    """
+    return _settled_in(few, start, candidates, FULL, rival=rival)
 
 
 def chi2_per_dof(bench: StructureBench, fit: Fit) -> float:
