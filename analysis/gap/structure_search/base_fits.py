@@ -15,14 +15,16 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_response.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_response.modal_table_settings import MODAL_TABLE
 from jointbench.analysis.gap.structure_response.structure_settings import STRUCTURE
+from jointbench.analysis.gap.structure_search.approach import (
+    approached,
+    explaining_cost,
+)
 from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
 )
 from jointbench.analysis.gap.structure_search.structure_fits import (
-    approached,
     chi2_per_dof,
-    explaining_cost,
     settled,
 )
 from jointbench.analysis.gap.structure_search.structure_search_settings import (

@@ -15,11 +15,9 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
+from jointbench.analysis.gap.structure_search.approach import approached
 from jointbench.analysis.gap.structure_search.records_of_search import hardest
-from jointbench.analysis.gap.structure_search.structure_fits import (
-    approached,
-    chi2_per_dof,
-)
+from jointbench.analysis.gap.structure_search.structure_fits import chi2_per_dof
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )

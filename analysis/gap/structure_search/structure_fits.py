@@ -37,37 +37,6 @@ from jointbench.analysis.gap.structure_search.structure_search_settings import (
 )
 
 
-def approached(
-    few: StructureBench, start: FloatArray, candidates: Sequence[Candidate]
-) -> tuple[StructureBench, Fit]:
-    """Fit one record of each condition, window by window to whole records.
-
-    A fit that is far off goes to whole records at once.
-
-    Args:
-        few: one record of each condition.
-        start: base coordinates, then those of the effects.
-        candidates: effects.
-    """
-    few, fit = in_windows(few, start, candidates)
-    rival = None if candidates else explaining_cost(few)
-    return in_full(few, fit.x, candidates, rival=rival)
-
-
-def explaining_cost(bench: StructureBench) -> float | None:
-    """Return the cost per row that a base should reach; None for any.
-
-    A base that lacks an effect creeps where its modal table is uncertain, far from
-    explaining the hits, and the one beside the effect takes its place.
-
-    Args:
-        bench: its records.
-    """
-    if not bench.uncertain:
-        return None
-    return bench.policy.floor_chi2 / bench.coherence
-
-
 def in_windows(
     few: StructureBench,
     start: FloatArray,
