@@ -61,7 +61,7 @@ def test_a_rival_out_of_reach_ends_a_descent_before_its_first_step(
     start: tuple[float, float],
 ):
     """The slopes promise to take all but the four that every point leaves."""
-    bench, problem = valley()
+    _, problem = valley()
     begun = fit_at(problem, np.array(start), FULL).cost
     for share, moves in ((0.9, True), (1.1, False)):
         rival = begun - share * 2.0 * (begun - 4.0)

@@ -8,6 +8,7 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.judgement.naming import Acceptance
+from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -114,6 +115,22 @@ def test_responses_to_errors_of_bodies_are_derivatives(
         np.testing.assert_allclose(
             rows[:, k], found, rtol=0, atol=0.02 * np.abs(found).max()
         )
+
+
+def test_residuals_whitened_together_are_those_of_each(drawn: StructureBench) -> None:
+    """Of errors of bodies, sets of effects share the directions that are removed."""
+    own = weighed_by_bodies(drawn, np.zeros(drawn.base_sd.size))
+    assert own is not None
+    names = ("gain_error", "delay", "added_mass")
+    chosen = [
+        next(c for c in own.candidates if c.effect.name == name) for name in names
+    ]
+    sets = [(Term(c, np.full(len(c.effect.parameters), 0.01)),) for c in chosen]
+    base = np.full(own.base_sd.size, 1e-3)
+    together = own.residuals(base, [(), *sets], WINDOW)
+    for terms, row in zip([(), *sets], together, strict=True):
+        alone = own.residual(base, terms, WINDOW)
+        np.testing.assert_allclose(row, alone, rtol=0, atol=1e-9 * np.abs(alone).max())
 
 
 def test_a_small_gain_is_found_beside_errors_of_bodies(drawn: StructureBench) -> None:
