@@ -10,9 +10,9 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, words_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.candidate_starts import CandidateFit, along
-from jointbench.analysis.gap.search.descent import cost_at, minimise
+from jointbench.analysis.gap.search.descent import Descent, cost_at, descend
 from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
@@ -78,41 +78,64 @@ def carried(
     fits: list[Fit] = []
     rival = costs.short
     bases = _bases(few, near)
-    for candidate in _chosen(few, near, screening, bases):
-        progress(f"{words_of((*near.candidates, candidate))} in a short window")
-        starts = _starts(few, near, screening, candidate, bases)
+    chosen = _chosen(few, near, screening, bases)
+    begun = [_starts(few, near, screening, c, bases) for c in chosen]
+    for starts in _in_order(few, begun):
+        progress(f"{starts[0].label} in a short window")
         found = [
-            minimise(
-                s.problem,
-                s.x,
-                SHORT,
-                iterations=STRUCTURE_SEARCH.short_iterations,
-                rival=rival,
-                exact_slopes=False,
-            )
-            for s in starts[: STRUCTURE_SEARCH.starts_kept]
+            _fitted(few, one.problem, one.x, SHORT, rival)
+            for one in starts[: STRUCTURE_SEARCH.starts_kept]
         ]
-        fits += sorted(found, key=lambda f: f.cost)[:1]
+        fits.append(min(found, key=lambda f: f.cost))
         rival = _lowest(costs.short, fits)
     longer: list[Fit] = []
     rival = costs.longer
     for fit in _best_with_continued(few, fits, costs.short):
         progress(f"{words_of(fit.candidates)} in a longer window")
         own = few.at(fit.base, fit.terms, few.landing, few.floor)
-        longer.append(
-            minimise(
-                make_problem(own, fit.candidates),
-                fit.x,
-                LONGER,
-                iterations=STRUCTURE_SEARCH.longer_iterations,
-                rival=rival,
-                exact_slopes=False,
-            )
-        )
+        problem = make_problem(own, fit.candidates)
+        longer.append(_fitted(few, problem, fit.x, LONGER, rival))
         rival = _lowest(costs.longer, longer)
     steps = STRUCTURE_SEARCH.longer_iterations
     longer = with_continued(few, longer, LONGER, steps, rival=costs.longer)
     return sorted(longer, key=lambda f: score(few, f))
+
+
+def _in_order(
+    few: StructureBench, begun: Sequence[list[CandidateFit]]
+) -> list[list[CandidateFit]]:
+    """Return the starts of candidates; with an uncertain table, the nearest ones first.
+
+    A descent ends where it would hardly reach the best fit so far, so that a good one
+    spares the steps of the others.
+
+    Args:
+        few: one record of each condition.
+        begun: starts of each candidate, best first.
+    """
+    some = [starts for starts in begun if starts]
+    return sorted(some, key=lambda own: own[0].cost) if few.uncertain else some
+
+
+def _fitted(
+    few: StructureBench,
+    problem: FitProblem,
+    start: FloatArray,
+    window: Resolution,
+    rival: float | None,
+) -> Fit:
+    """Return a fit in a window, which ends where it would hardly reach a rival."""
+    short = window == SHORT
+    how = Descent(
+        window,
+        STRUCTURE_SEARCH.short_iterations
+        if short
+        else STRUCTURE_SEARCH.longer_iterations,
+        rival,
+        exact_slopes=False,
+        sparing=few.uncertain,
+    )
+    return descend(problem, start, how)
 
 
 def _lowest(cost: float | None, fits: Sequence[Fit]) -> float | None:
