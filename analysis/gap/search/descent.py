@@ -44,7 +44,8 @@ class Descent:
         sparing: try no step that is hardly shorter than one that failed, and correct
             none further whose correction raised the cost.
         followed: whether a fit with slopes of its own follows, so that no others are
-            computed where those updated by the secant promise nothing more.
+            computed where a step was small, or those updated by the secant promise
+            nothing more.
         promises: drops that the linear model predicts for a full step within which the
             rival must be, or the descent ends; None for any number.
     """
@@ -140,7 +141,7 @@ def descend(
         guessed = near.predicted_drop(moved[0])
         change, before = moved[0] - x, r
         x, r, cost = moved
-        if small and (age == 0 or known is not None):
+        if small and (age == 0 or known is not None or how.followed):
             break
         if how.rival is not None and k >= 1:
             if cost - how.rival > SEARCH.patience * drop:
