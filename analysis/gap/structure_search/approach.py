@@ -13,12 +13,12 @@ from jointbench.analysis.gap.structure_search.structure_fits import in_full, in_
 def approached(
     few: StructureBench, start: FloatArray, candidates: Sequence[Candidate]
 ) -> tuple[StructureBench, Fit]:
-    """Fit one record of each condition, window by window to whole records.
+    """Fit some records window by window to whole ones.
 
     A fit that is far off goes to whole records at once.
 
     Args:
-        few: one record of each condition.
+        few: records of the base or of effects.
         start: base coordinates, then those of the effects.
         candidates: effects.
     """

@@ -76,27 +76,27 @@ def carried(
         Fits in the longer window, best first.
     """
     fits: list[Fit] = []
-    rival = costs.short
+    rival, steps = costs.short, STRUCTURE_SEARCH.short_iterations
     bases = _bases(few, near)
     chosen = _chosen(few, near, screening, bases)
     begun = [_starts(few, near, screening, c, bases) for c in chosen]
     for starts in _in_order(few, begun):
         progress(f"{starts[0].label} in a short window")
-        found = [
-            _fitted(few, one.problem, one.x, SHORT, rival)
+        tried = [
+            _fitted(one.problem, one.x, SHORT, steps, rival, sparing=few.uncertain)
             for one in starts[: STRUCTURE_SEARCH.starts_kept]
         ]
-        fits.append(min(found, key=lambda f: f.cost))
+        fits.append(min(tried, key=lambda f: f.cost))
         rival = _lowest(costs.short, fits)
     longer: list[Fit] = []
-    rival = costs.longer
+    rival, steps = costs.longer, STRUCTURE_SEARCH.longer_iterations
     for fit in _best_with_continued(few, fits, costs.short):
         progress(f"{words_of(fit.candidates)} in a longer window")
         own = few.at(fit.base, fit.terms, few.landing, few.floor)
         problem = make_problem(own, fit.candidates)
-        longer.append(_fitted(few, problem, fit.x, LONGER, rival))
+        found = _fitted(problem, fit.x, LONGER, steps, rival, sparing=few.uncertain)
+        longer.append(found)
         rival = _lowest(costs.longer, longer)
-    steps = STRUCTURE_SEARCH.longer_iterations
     longer = with_continued(few, longer, LONGER, steps, rival=costs.longer)
     return sorted(longer, key=lambda f: score(few, f))
 
@@ -118,23 +118,16 @@ def _in_order(
 
 
 def _fitted(
-    few: StructureBench,
     problem: FitProblem,
     start: FloatArray,
     window: Resolution,
+    steps: int,
     rival: float | None,
+    *,
+    sparing: bool,
 ) -> Fit:
     """Return a fit in a window, which ends where it would hardly reach a rival."""
-    short = window == SHORT
-    how = Descent(
-        window,
-        STRUCTURE_SEARCH.short_iterations
-        if short
-        else STRUCTURE_SEARCH.longer_iterations,
-        rival,
-        exact_slopes=False,
-        sparing=few.uncertain,
-    )
+    how = Descent(window, steps, rival, exact_slopes=False, sparing=sparing)
     return descend(problem, start, how)
 
 

@@ -31,7 +31,7 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
-from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
+from jointbench.analysis.gap.structure_search.slopes_again import with_own_slopes
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )
@@ -120,7 +120,7 @@ def _settled_in(
             least_drop=_least_drop(few, candidates, window),
             dof=_dof(few, window),
             sparing=few.uncertain,
-            followed=few.uncertain and k == 0,
+            followed=_has_own_slopes_next(few, candidates) and k == 0,
         )
         fit = _stated(few, descend(problem, x, how, given))
         x = fit.x
@@ -151,6 +151,17 @@ def _left_to_next(bench: StructureBench, fit: Fit) -> tuple[Fit, SlopesOnHand | 
     """
     law = fit.jacobian.size and bench.nonlinear(fit.candidates)
     return without_slopes(fit), SlopesOnHand(fit.jacobian) if law else None
+
+
+def _has_own_slopes_next(
+    bench: StructureBench, candidates: Sequence[Candidate]
+) -> bool:
+    """Return whether a second round begins with slopes of its own.
+
+    With laws it takes those of the first, and with an exact table each round is fitted
+    to its end.
+    """
+    return bench.uncertain and not bench.nonlinear(candidates)
 
 
 def _least_drop(
@@ -198,7 +209,8 @@ def settled(
             is left where it is, and its slopes are those of the step before.
     """
     bench = _landed(bench, start, candidates, near=near)
-    fit = _whole(bench, start, candidates, rival=rival, followed=bench.uncertain)
+    followed = _has_own_slopes_next(bench, candidates)
+    fit = _whole(bench, start, candidates, rival=rival, followed=followed)
     for _ in range(STRUCTURE_SEARCH.settling_rounds):
         landing, before = bench.landing, fit.cost
         fit, given = _left_to_next(bench, fit)
@@ -218,9 +230,7 @@ def settled(
         if before - fit.cost < least * fit.cost:
             break
     if near and not bench.nonlinear(candidates):
-        if fit.late and rival is None:
-            fit = with_slopes(bench, without_slopes(fit))
-        return bench, fit
+        return bench, with_own_slopes(bench, fit) if rival is None else fit
     fit, given = _left_to_next(bench, fit)
     steps = STRUCTURE_SEARCH.fine_iterations
     return bench, fitted_finely(bench, fit.x, candidates, steps, given)
