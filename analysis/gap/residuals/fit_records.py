@@ -95,6 +95,11 @@ def without_slopes(fit: Fit) -> Fit:
     return replace(fit, jacobian=np.zeros((0, fit.x.size)))
 
 
+def without_late_slopes(fit: Fit) -> Fit:
+    """Return a fit without slopes, if these are those of an earlier step."""
+    return without_slopes(fit) if fit.late else fit
+
+
 def with_covariance_alone(fit: Fit) -> Fit:
     """Return a fit that takes little memory, with the covariance of its slopes."""
     covariance = fit.covariance if fit.jacobian.size else fit.kept

@@ -43,7 +43,7 @@ def beyond_table(bench: StructureBench, fit: Fit) -> tuple[str, float]:
     squares = np.empty(sigma.shape)
     for own in hits.of_points:
         scaled = bench.directions[own] / sigma[own, None, :, None]
-        unit = bench.errors.rows[own] / sigma[own].mean(axis=1)[:, None, None]
+        unit = bench.errors.rows(own) / sigma[own].mean(axis=1)[:, None, None]
         rows = off[own, None] / sigma[own, None, :, None]
         free_whitening(scaled, unit).whiten(rows)
         squares[own] = np.mean(rows[:, 0] ** 2, axis=2)

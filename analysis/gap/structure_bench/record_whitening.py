@@ -159,7 +159,7 @@ class RecordWhitening:
         for own in groups:
             of_record = self.sigma[own].mean(axis=1)
             of_channel = self.sigma[own[0]] / of_record[0]
-            unit = errors.rows[own, :, :count] / of_record[:, None, None]
+            unit = errors.rows(own)[:, :, :count] / of_record[:, None, None]
             sd = errors.sd[self.hits.point[own[0]]] / of_channel[:, None]
             points.append(point_whitening(scaled[own], unit, sd))
         return TableWhitening(groups, tuple(points))

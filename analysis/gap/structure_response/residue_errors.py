@@ -8,7 +8,7 @@ and its residue between a point and a channel. Frequencies are base coordinates 
 between such hits, and a response that is no sum of the modes, is not due to the table.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,17 +34,32 @@ class ResidueErrors:
     """Errors of closed modes between points and channels.
 
     Attributes:
-        rows: responses of unit error in each record, shape
-            (n_records, n_errors, n_samples).
+        lines: accelerations per force of unit errors, shape (n_errors, n_lines).
+        frame: transforms of the window.
+        records: those of the frame, shape (n_records,).
         sd: of these errors, shape (n_points, n_channels, n_errors).
     """
 
-    rows: FloatArray
+    lines: ComplexArray
+    frame: HitFrame
+    records: IntArray
     sd: FloatArray
+
+    def rows(self, own: IntArray) -> FloatArray:
+        """Return responses of unit error, shape (n_own, n_errors, n_samples).
+
+        They are computed where they are used: those of all records are as large as the
+        records times the errors, and each fit at rest has its own.
+
+        Args:
+            own: records.
+        """
+        forces = self.frame.force[self.records[own]]
+        return np.stack([self.frame.records(self.lines * one) for one in forces])
 
     def chosen(self, records: IntArray) -> "ResidueErrors":
         """Return the errors of some records."""
-        return ResidueErrors(self.rows[records], self.sd)
+        return replace(self, records=self.records[records])
 
 
 def residue_errors(
@@ -81,9 +96,8 @@ def residue_errors(
     sd = np.concatenate(
         [error[..., near], across[..., near], damped[..., near], static[..., None]], -1
     )
-    lines = _lines(modes, near, frame.s)
-    rows = np.stack([frame.records(lines * one) for one in frame.force])
-    return ResidueErrors(rows, sd)
+    records = np.arange(len(frame.force))
+    return ResidueErrors(_lines(modes, near, frame.s), frame, records, sd)
 
 
 def _turns(modes: RealModes) -> FloatArray:

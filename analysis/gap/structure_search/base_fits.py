@@ -8,7 +8,7 @@ from scipy.special import ndtri
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
-from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.fit_records import Fit, without_late_slopes
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
@@ -19,7 +19,7 @@ from jointbench.analysis.gap.structure_search.approach import (
     approached,
     explaining_cost,
 )
-from jointbench.analysis.gap.structure_search.slopes_again import with_own_slopes
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
 )
@@ -72,7 +72,8 @@ def base_in_whole_records(
         limit = explaining_cost(bench)
         rival = None if limit is None else limit * bench.blocks.dof
         bench, fit = settled(bench, x, (), near=True, rival=rival)
-        return bench, with_own_slopes(bench, fit)
+        fit = without_late_slopes(fit)  # or they are kept beside those at the end
+        return bench, with_slopes(bench, fit)
     whole = bench.at(x, (), bench.landing, bench.table_floor)
     return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
 

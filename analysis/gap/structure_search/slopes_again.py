@@ -4,7 +4,7 @@
 from dataclasses import replace
 
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
-from jointbench.analysis.gap.residuals.fit_records import Fit, without_slopes
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
@@ -22,16 +22,6 @@ def with_slopes(bench: StructureBench, fit: Fit) -> Fit:
     problem = make_problem(bench, fit.candidates)
     found = minimise(problem, fit.x, FULL, iterations=0)
     return replace(found, cost=fit.cost)
-
-
-def with_own_slopes(bench: StructureBench, fit: Fit) -> Fit:
-    """Return a fit whose slopes are not those of an earlier step.
-
-    Args:
-        bench: on which it was found.
-        fit: of effects that are not integrated, with its slopes.
-    """
-    return with_slopes(bench, without_slopes(fit)) if fit.late else fit
 
 
 def with_covariance(bench: StructureBench, fit: Fit) -> Fit:

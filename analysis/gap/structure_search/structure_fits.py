@@ -18,7 +18,12 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import (
     FULL,
     Resolution,
 )
-from jointbench.analysis.gap.residuals.fit_records import Fit, split, without_slopes
+from jointbench.analysis.gap.residuals.fit_records import (
+    Fit,
+    split,
+    without_late_slopes,
+    without_slopes,
+)
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import (
     Descent,
@@ -31,7 +36,7 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.slopes_on_hand import SlopesOnHand
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_response.hit_frames import window_count
-from jointbench.analysis.gap.structure_search.slopes_again import with_own_slopes
+from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )
@@ -230,7 +235,10 @@ def settled(
         if before - fit.cost < least * fit.cost:
             break
     if near and not bench.nonlinear(candidates):
-        return bench, with_own_slopes(bench, fit) if rival is None else fit
+        if rival is not None:
+            return bench, fit
+        fit = without_late_slopes(fit)  # or they are kept beside those at the end
+        return bench, with_slopes(bench, fit)
     fit, given = _left_to_next(bench, fit)
     steps = STRUCTURE_SEARCH.fine_iterations
     return bench, fitted_finely(bench, fit.x, candidates, steps, given)

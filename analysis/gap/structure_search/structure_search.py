@@ -296,9 +296,7 @@ def needless(
     amplitude = weakest_amplitude(fit)
     if amplitude >= STRUCTURE_SEARCH.plain_amplitude and (far_off or not uncertain):
         return None
-    bare = make_problem(best.bench, ())
-    starts = [(cost_at(bare, x, FULL), x) for x in (fit.base, base_without(fit))]
-    cost, start = min(starts, key=lambda one: one[0])
+    cost, start = _cheaper_start(best.bench, fit)
     if uncertain and cost > STRUCTURE_SEARCH.again_ratio * ended:
         return None
     del fit
@@ -309,9 +307,20 @@ def needless(
     if bench.uncertain and takes(bench, best.fit, base):
         return None
     if rival is not None:  # slopes of one that does not reach it are not needed
-        base = with_slopes(bench, without_slopes(base))
+        base = without_slopes(base)  # or they are kept beside those that follow
+        base = with_slopes(bench, base)
     judged = accept_structure(bench, base, base)
     nothing = amplitude < bench.policy.amplitude_limit and best.acceptance.passed
     if not (judged.passed or nothing):
         return None
     return without_effects(bench, base, judged, screening, fit_summary(bench, base))
+
+
+def _cheaper_start(bench: StructureBench, fit: Fit) -> tuple[float, FloatArray]:
+    """Return the cost of the base from a fit with effects, and its start there.
+
+    The effects are left out, or taken over by the base as far as it can.
+    """
+    bare = make_problem(bench.at_rest(), ())
+    starts = [(cost_at(bare, x, FULL), x) for x in (fit.base, base_without(fit))]
+    return min(starts, key=lambda one: one[0])

@@ -114,3 +114,16 @@ def test_errors_of_stiffness_leave_residues_almost_real() -> None:
     in_phase, across = sd[..., :modes], sd[..., modes : 2 * modes]
     assert np.all(across <= in_phase)
     assert 0.0 < np.median(across / in_phase) < 0.1
+
+
+def test_errors_of_some_records_are_their_own_among_those_of_all() -> None:
+    """Responses to errors follow the forces of the records that are chosen."""
+    made, _, state = uncertain()
+    frame = hit_frame(made.hits, made.hits.force.shape[1])
+    errors = residue_errors(made, state, frame)
+    whole = errors.rows(np.arange(len(frame.force)))
+    some = np.array([1, 0])
+    np.testing.assert_array_equal(errors.rows(some), whole[some])
+    second = errors.chosen(some).rows(np.array([1]))
+    np.testing.assert_array_equal(second, whole[:1])
+    assert not np.array_equal(whole[0], whole[1])
