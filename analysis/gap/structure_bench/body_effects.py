@@ -155,7 +155,16 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
         Effect(
             "modulus",
             "stiffness",
-            (Parameter("change", "-", lower=-0.6, upper=1.5, off=0.0),),
+            (
+                Parameter(
+                    "change",
+                    "-",
+                    lower=-0.6,
+                    upper=1.5,
+                    off=0.0,
+                    far=(-0.3, -0.2, -0.1, 0.1, 0.2, 0.35),
+                ),
+            ),
             "Ewins 2000, Modal Testing, sec. 6.3",
             report=_body_factor,
             by_prior=True,

@@ -201,7 +201,7 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
     one_parameter(
         "preload_stiffness",
         "preload",
-        Parameter("n", "-", lower=-2.0, upper=2.0, off=0.0),
+        Parameter("n", "-", lower=-2.0, upper=2.0, off=0.0, far=(-0.8, -0.4, 0.4, 0.8)),
         _PRELOAD,
         with_torques,
         _by_torque,
@@ -211,7 +211,9 @@ JOINT_EFFECTS: tuple[StructureEffect, ...] = (
     one_parameter(
         "preload_damping",
         "preload",
-        Parameter("n", "-", lower=-3.0, upper=3.0, off=0.0),
+        Parameter(
+            "n", "-", lower=-3.0, upper=3.0, off=0.0, far=(-1.5, -0.75, 0.75, 1.5)
+        ),
         _PRELOAD,
         with_torques,
         _damp_by_torque,

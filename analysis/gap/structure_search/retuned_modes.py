@@ -13,12 +13,21 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import split
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import (
     StructureBench,
     frames_of,
 )
 from jointbench.analysis.gap.structure_response.table_errors import tuned_again
+from jointbench.analysis.gap.structure_search.structure_search_settings import (
+    STRUCTURE_SEARCH,
+)
+
+_WINDOW = Resolution(STRUCTURE_SEARCH.approach_windows[0])
+"""In which a start with other modes is compared with what it was."""
 
 
 def retuned(
@@ -54,3 +63,35 @@ def retuned(
     moved = np.concatenate([x[: own.start], tuning, x[own.stop :]])
     layout = layout.tuned_in(new, scale * new.sd)
     return replace(bench, layout=layout, kept=frames_of(bench.kept)), moved
+
+
+def retuned_as_near(
+    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate]
+) -> tuple[StructureBench, FloatArray]:
+    """Return the bench with the closed modes at a fit, if it stays near the records.
+
+    Couplings are those of the nearest modes, so that a structure far from that of the
+    old ones may lose what it was fitted to: it keeps them, else.
+
+    Args:
+        bench: with the closed modes of another state.
+        x: base coordinates, then those of the effects.
+        candidates: effects.
+    """
+    own, moved = retuned(bench, x, candidates)
+    if own is bench:
+        return bench, x
+    near = _cost(bench, x, candidates)
+    if _cost(own, moved, candidates) > STRUCTURE_SEARCH.retuned_ratio * near:
+        return bench, x
+    return own, moved
+
+
+def _cost(
+    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate]
+) -> float:
+    """Return the cost in the shorter window of the approach."""
+    n = bench.base_sd.size
+    terms = split(x, n, candidates)
+    here = bench.at(x[:n], terms, bench.landing, bench.floor, _WINDOW.window)
+    return cost_at(make_problem(here, candidates), x, _WINDOW)

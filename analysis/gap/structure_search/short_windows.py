@@ -84,7 +84,7 @@ def carried(
         progress(f"{starts[0].label} in a short window")
         tried = [
             _fitted(one.problem, one.x, SHORT, steps, rival, sparing=few.uncertain)
-            for one in starts[: STRUCTURE_SEARCH.starts_kept]
+            for one in _kept(few, near, starts)
         ]
         fits.append(min(tried, key=lambda f: f.cost))
         rival = _lowest(costs.short, fits)
@@ -115,6 +115,28 @@ def _in_order(
     """
     some = [starts for starts in begun if starts]
     return sorted(some, key=lambda own: own[0].cost) if few.uncertain else some
+
+
+def _kept(
+    few: StructureBench, near: Fit, starts: Sequence[CandidateFit]
+) -> list[CandidateFit]:
+    """Return the starts of a candidate that are fitted, best first.
+
+    Beside a base far off, a strong effect of a shape of its own, as a hidden mode at
+    its frequency, starts far from the records, and a few steps lead it near: the best
+    start at each shape is fitted there.
+
+    Args:
+        few: one record of each condition.
+        near: fit in the short window to which the effect is added.
+        starts: best first.
+    """
+    kept = list(starts[: STRUCTURE_SEARCH.starts_kept])
+    far_off = chi2_per_dof(few, near) > STRUCTURE_SEARCH.explaining_chi2
+    if few.nonlinear(starts[0].problem.candidates) or not far_off:
+        return kept
+    shapes = {one.x[near.x.size + 1 :].tobytes(): one for one in reversed(starts)}
+    return kept + [one for one in shapes.values() if all(one is not k for k in kept)]
 
 
 def _fitted(

@@ -88,6 +88,13 @@ class StructureSearchSettings:
         "condition",
         "a step in all whole records costs twenty times as much as one in 20 ms",
     )
+    retuned_ratio: float = numerical(
+        3.0,
+        "-",
+        "cost of a start with the closed modes there over that with the modes it had, "
+        "above which it keeps these",
+        "a joint that yields along the bolts rose from 352 to 25,000; others by 1 %",
+    )
     landing_windows: tuple[float, float] = numerical(
         (0.02, 0.06),
         "s",

@@ -16,7 +16,7 @@ from jointbench.analysis.gap.residuals.fit_records import (
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.continued_laws import continued
-from jointbench.analysis.gap.structure_search.retuned_modes import retuned
+from jointbench.analysis.gap.structure_search.retuned_modes import retuned_as_near
 from jointbench.analysis.gap.structure_search.slopes_again import with_slopes
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
@@ -83,7 +83,7 @@ def in_whole_records(
         if _cost_per_row(fit) > limit * _cost_per_row(met[0][1]):
             continue
         progress(f"{words_of(fit.candidates)} in whole records")
-        own, start = retuned(own, fit.x, fit.candidates)
+        own, start = retuned_as_near(own, fit.x, fit.candidates)
         own, found = in_full(own, start, fit.candidates)
         near.append((own.at_rest(), with_covariance_alone(found)))
     near.sort(key=lambda one: one[1].cost)
@@ -253,7 +253,7 @@ def _met_in_windows(
     rival: float | None = None
     for fit in worth_it(few, carried):
         progress(f"{words_of(fit.candidates)} where hits landed")
-        own, start = retuned(few, fit.x, fit.candidates)
+        own, start = retuned_as_near(few, fit.x, fit.candidates)
         # A linear fit costs little, and its first steps mislead about where it ends.
         law = own.nonlinear(fit.candidates)
         own, here = in_windows(own, start, fit.candidates, rival=rival if law else None)
