@@ -134,7 +134,7 @@ BODY_EFFECTS: tuple[StructureEffect, ...] = (
                     "band",
                     lower=0.02,
                     upper=1.2,
-                    starts=(0.08, 0.12, 0.18, 0.27, 0.4, 0.6),
+                    starts=(0.08, 0.12, 0.18, 0.27, 0.4, 0.6, 0.9, 1.12),
                     transform=Transform.LOG,
                 ),
                 Parameter(
