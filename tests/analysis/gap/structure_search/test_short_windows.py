@@ -13,6 +13,8 @@ from jointbench.analysis.gap.structure_bench.structure_bench import StructureBen
 from jointbench.analysis.gap.structure_search.short_windows import (
     SHORT,
     carried,
+)
+from jointbench.analysis.gap.structure_search.short_windows import (
     tested as directed_tests,
 )
 
