@@ -85,6 +85,7 @@ from jointbench.analysis.gap.structure_search.weak_effects import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     best_first,
+    explains_plainly,
     in_whole_records,
     leaves_much,
 )
@@ -212,7 +213,8 @@ def _searched(
     # Errors of a modal table are as large as a second effect and as manifold.
     if not bench.uncertain and leaves_much(done[0]):
         two = second_effects(bench, few, base, singles, done[0], progress)
-        return found.judged(two or done, screening)
+        if two and (explains_plainly(two[0]) or not done[0].acceptance.passed):
+            return found.judged(two, screening)
     return found.judged(done, screening)
 
 

@@ -93,7 +93,8 @@ class StructureSearchSettings:
         "-",
         "cost of a start with the closed modes there over that with the modes it had, "
         "above which it keeps these",
-        "a joint that yields along the bolts rose from 352 to 25,000; others at most doubled",
+        "a joint that yields along the bolts rose from 352 to 25,000; others at most "
+        "doubled",
     )
     landing_windows: tuple[float, float] = numerical(
         (0.02, 0.06),

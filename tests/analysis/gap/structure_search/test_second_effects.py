@@ -22,7 +22,10 @@ from jointbench.analysis.gap.structure_search.structure_acceptance import (
 from jointbench.analysis.gap.structure_search.structure_fits import settled
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import search_structure
-from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
+from jointbench.analysis.gap.structure_search.whole_records import (
+    JudgedFit,
+    leaves_much,
+)
 
 
 def struck(
@@ -73,3 +76,17 @@ def test_an_accepted_pair_with_a_law_ends_the_search(found: StructureOutcome) ->
     assert {c.label for c in best.fit.candidates} == set(hidden)
     beside = [line for line in lines if "directed tests beside" in line]
     assert beside == ["directed tests beside gain_error@channel:A1"]
+
+
+@pytest.mark.parametrize(
+    ("excess", "sought"), [(-0.5, False), (0.2, False), (2.0, True)]
+)
+def test_an_accepted_effect_that_leaves_more_than_the_base_may_is_searched_beside(
+    found: StructureOutcome, excess: float, sought: bool
+) -> None:
+    """A strong effect has a wide limit, into which a weak one fits."""
+    bench, base = found.base_bench, found.outcome.base
+    accepted = replace(
+        found.outcome.acceptance, passed=True, excess=excess, allowed=5.0
+    )
+    assert leaves_much(JudgedFit(bench, base, accepted)) is sought
