@@ -184,11 +184,11 @@ def coverage(runs: Sequence[Json]) -> dict[str, str]:
 
 
 def loops(runs: Sequence[Json]) -> str:
-    """Return the share of right laws at bolts whose loops are within 15 %."""
+    """Return the share of right laws at one bolt whose loops are within 15 %."""
     row = f"single-{min(worlds_of(runs))}"
-    errors = [
-        loop_error(run) for run in runs if run["row"] == row and run["word"] == "right"
-    ]
+    right = [run for run in runs if run["row"] == row and run["word"] == "right"]
+    named = [run for run in right if len(run["found"]["effects"]) == 1]
+    errors = [loop_error(run) for run in named]
     known = [error for error in errors if error is not None]
     return share_text(sum(error < _LOOP for error in known), len(known))
 
