@@ -85,6 +85,28 @@ def second_effects(
     return _accepted(bench, base, two)
 
 
+def leaves_much(best: JudgedFit) -> bool:
+    """Return whether a fit leaves enough for a second effect.
+
+    Of a law whose chi2 is within its limit, the base or a mark is refused, which no
+    second effect mends; each fit of a pair integrates the law again. The limit allows a
+    share of what the base leaves, and beside a strong effect a weak one fits into it.
+    """
+    judged = best.acceptance
+    if best.bench.nonlinear(best.fit.candidates) and judged.excess <= judged.allowed:
+        return False
+    return not (judged.passed and explains_plainly(best))
+
+
+def explains_plainly(one: JudgedFit) -> bool:
+    """Return whether a fit would explain the hits without a share of the base's chi2.
+
+    Args:
+        one: fit to all records.
+    """
+    return one.acceptance.excess <= one.bench.policy.floor_chi2 - 1.0
+
+
 def _near_with_law(few: StructureBench, pair: Fit) -> bool:
     """Return whether a pair with a law comes near the hits in the longer window."""
     limit = STRUCTURE_SEARCH.explaining_chi2

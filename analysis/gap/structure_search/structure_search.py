@@ -47,7 +47,11 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     torques_in_turn,
 )
 from jointbench.analysis.gap.structure_search.retuned_modes import retuned
-from jointbench.analysis.gap.structure_search.second_effects import second_effects
+from jointbench.analysis.gap.structure_search.second_effects import (
+    explains_plainly,
+    leaves_much,
+    second_effects,
+)
 from jointbench.analysis.gap.structure_search.sensors_from_base import (
     of_table,
     sensors_from_base,
@@ -85,9 +89,7 @@ from jointbench.analysis.gap.structure_search.weak_effects import (
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
     best_first,
-    explains_plainly,
     in_whole_records,
-    leaves_much,
 )
 
 UNTESTED = Screening((), 0.0, 0.0)

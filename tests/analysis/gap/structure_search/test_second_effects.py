@@ -14,7 +14,10 @@ from jointbench.analysis.gap.structure_bench.make_structure_bench import (
 )
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.records_of_search import one_of_each
-from jointbench.analysis.gap.structure_search.second_effects import second_effects
+from jointbench.analysis.gap.structure_search.second_effects import (
+    leaves_much,
+    second_effects,
+)
 from jointbench.analysis.gap.structure_search.short_windows import LONGER
 from jointbench.analysis.gap.structure_search.structure_acceptance import (
     accept_structure,
@@ -22,10 +25,7 @@ from jointbench.analysis.gap.structure_search.structure_acceptance import (
 from jointbench.analysis.gap.structure_search.structure_fits import settled
 from jointbench.analysis.gap.structure_search.structure_outcome import StructureOutcome
 from jointbench.analysis.gap.structure_search.structure_search import search_structure
-from jointbench.analysis.gap.structure_search.whole_records import (
-    JudgedFit,
-    leaves_much,
-)
+from jointbench.analysis.gap.structure_search.whole_records import JudgedFit
 
 
 def struck(

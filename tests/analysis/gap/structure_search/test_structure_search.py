@@ -34,7 +34,11 @@ from jointbench.analysis.gap.structure_search.records_of_search import (
     one_of_each,
     torques_in_turn,
 )
-from jointbench.analysis.gap.structure_search.second_effects import affordable, alone
+from jointbench.analysis.gap.structure_search.second_effects import (
+    affordable,
+    alone,
+    leaves_much,
+)
 from jointbench.analysis.gap.structure_search.short_windows import SHORT, carried
 from jointbench.analysis.gap.structure_search.sought_frequencies import (
     from_other_frequencies,
@@ -62,7 +66,6 @@ from jointbench.analysis.gap.structure_search.structure_search_settings import (
 )
 from jointbench.analysis.gap.structure_search.whole_records import (
     JudgedFit,
-    leaves_much,
     worth_it,
 )
 from jointbench.station.schemas.nominal_bench_file import read_nominal
