@@ -81,16 +81,22 @@ def retuned_as_near(
     own, moved = retuned(bench, x, candidates)
     if own is bench:
         return bench, x
-    near = _cost(bench, x, candidates)
-    if _cost(own, moved, candidates) > STRUCTURE_SEARCH.retuned_ratio * near:
+    near = cost_here(bench, x, candidates)
+    if cost_here(own, moved, candidates) > STRUCTURE_SEARCH.retuned_ratio * near:
         return bench, x
     return own, moved
 
 
-def _cost(
+def cost_here(
     bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate]
 ) -> float:
-    """Return the cost in the shorter window of the approach."""
+    """Return the cost in the first window of the approach, expanded at x.
+
+    Args:
+        bench: its hits where they are known to have landed.
+        x: base coordinates, then those of the effects.
+        candidates: effects.
+    """
     n = bench.base_sd.size
     terms = split(x, n, candidates)
     here = bench.at(x[:n], terms, bench.landing, bench.floor, _WINDOW.window)

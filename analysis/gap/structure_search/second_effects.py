@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A second effect beside the best single ones, where none explains the hits."""
+"""A second effect beside the best single ones, where these leave much of the hits."""
 
 from collections.abc import Sequence
 
@@ -91,6 +91,9 @@ def leaves_much(best: JudgedFit) -> bool:
     Of a law whose chi2 is within its limit, the base or a mark is refused, which no
     second effect mends; each fit of a pair integrates the law again. The limit allows a
     share of what the base leaves, and beside a strong effect a weak one fits into it.
+
+    Args:
+        best: the best fit of a single effect to all records.
     """
     judged = best.acceptance
     if best.bench.nonlinear(best.fit.candidates) and judged.excess <= judged.allowed:

@@ -9,20 +9,16 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate
-from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import split
-from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import cost_at
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_search.retuned_modes import (
+    cost_here,
     retuned,
     retuned_as_near,
 )
 from jointbench.analysis.gap.structure_search.structure_search_settings import (
     STRUCTURE_SEARCH,
 )
-
-WINDOW = Resolution(STRUCTURE_SEARCH.approach_windows[0])
 
 
 def candidate_of(bench: StructureBench, label: str) -> Candidate:
@@ -38,16 +34,6 @@ def explained(
     response = bench.response(x[:n], split(x, n, candidates), None)
     hits = replace(bench.campaign.hits, response=response)
     return replace(bench, campaign=replace(bench.campaign, hits=hits), kept={})
-
-
-def cost(
-    bench: StructureBench, x: FloatArray, candidates: Sequence[Candidate]
-) -> float:
-    """Return the cost in the window in which starts are compared."""
-    n = bench.base_sd.size
-    terms = split(x, n, candidates)
-    here = bench.at(x[:n], terms, bench.landing, bench.floor, WINDOW.window)
-    return cost_at(make_problem(here, candidates), x, WINDOW)
 
 
 def start_at(
@@ -69,11 +55,11 @@ def test_other_closed_modes_are_not_taken_where_they_lose_the_fit(
     for _ in range(8):
         x = start_at(uncertain, 1.2, rng)
         bench = explained(uncertain, x, modulus)
-        before = cost(bench, x, modulus)
+        before = cost_here(bench, x, modulus)
         other, moved = retuned(bench, x, modulus)
         near, start = retuned_as_near(bench, x, modulus)
-        assert cost(near, start, modulus) <= limit * before
-        if cost(other, moved, modulus) > limit * before:
+        assert cost_here(near, start, modulus) <= limit * before
+        if cost_here(other, moved, modulus) > limit * before:
             assert near is bench
             lost += 1
     assert 0 < lost < 8
@@ -88,4 +74,6 @@ def test_other_closed_modes_are_taken_where_they_keep_the_fit(
     bench = explained(uncertain, x, support)
     near, start = retuned_as_near(bench, x, support)
     assert near is not bench
-    assert cost(near, start, support) == pytest.approx(cost(bench, x, support), rel=0.1)
+    assert cost_here(near, start, support) == pytest.approx(
+        cost_here(bench, x, support), rel=0.1
+    )

@@ -32,7 +32,7 @@ def hidden(bench: StructureBench, label: str, values: dict[str, float]) -> Term:
 @pytest.mark.parametrize(
     ("label", "values"),
     [
-        ("modulus@body:bottom", {"change": -0.25}),
+        ("modulus@body:top", {"change": -0.45}),
         ("preload_stiffness@bolts:all", {"n": 0.65}),
         ("hidden_mode@point:P1", {"m": 0.05, "f": 800.0, "zeta": 0.02}),
         ("hidden_mode@point:P2", {"m": 0.05, "f": 900.0, "zeta": 0.02}),
